@@ -39,7 +39,7 @@ SMALLEST = 1e-12
 EVERY = 5
 """Iterations between two checks for finished points."""
 
-LADDER = ((1.0, 1.0), (0.3, 0.05), (3.0, 0.1), (0.3, 3.0), (1.0, 0.1), (0.1, 0.3), (3.0, 3.0))
+LADDER = ((1.0, 1.0), (0.3, 0.05), (3.0, 0.1), (0.3, 3.0), (1.0, 0.1), (10.0, 0.3), (0.1, 0.3))
 """Factors of lambda of ports over velocity and over displacement: points that have not ended continue with the next."""
 
 
