@@ -21,7 +21,7 @@ WINGS = {
     "core": (),
     "signals": ("analysis", "formats", "records", "excitation", "inputs"),
     "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
-    "engines": ("simulation", "kinematics", "linear", "reduced"),
+    "engines": ("simulation", "kinematics", "linear", "reduced", "steady"),
     "drawing": ("rendering", "notebook"),
     "runs": ("car", "figures", "comparison", "output", "targets", "report"),
     "handover": ("fmu", "page", "bench"),
@@ -64,10 +64,11 @@ ROOMS: dict[str, set[str]] = {
     "kinematics": {"assembly", "flexbody", "laws", "parameters", "simulation"},
     "linear": {"assembly", "excitation", "flexbody", "laws", "parameters", "simulation"},
     "reduced": {"analysis", "core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
+    "steady": {"laws", "linear", "parameters", "reduced"},
     "rendering": {"analysis", "assembly", "kinematics", "parameters", "shapes", "simulation", "threads"},
     "notebook": {"analysis", "records", "rendering", "simulation"},
     "car": {"handed_down", "analysis", "excitation", "flexbody", "kinematics", "laws", "linear", "notebook"}
-    | {"parameters", "records", "reduced", "rendering", "simulation", "threads"},
+    | {"parameters", "records", "reduced", "rendering", "simulation", "steady", "threads"},
     "figures": {"analysis", "car", "parameters"},
     "comparison": {"analysis", "car", "excitation", "formats", "linear", "records", "rendering", "threads"},
     "output": {"analysis", "car", "comparison", "excitation", "figures", "flexbody", "formats", "linear", "machine"}

@@ -84,7 +84,9 @@ class LevelSettings(Settings):
         metavar="NAME,...",
     )
     at: tuple[str, ...] | None = setting(
-        'also compute all levels at this frequency, for example "3.7 Hz". May be repeated', action="append", metavar="HZ"
+        'also compute all levels at this frequency, for example "3.7 Hz". May be repeated',
+        action="append",
+        metavar="HZ",
     )
     band: tuple[float, float] | None = setting(
         "band of the peak [Hz]; default: around the peak that falls most from the lowest to the highest level",
@@ -92,7 +94,7 @@ class LevelSettings(Settings):
         metavar="HZ:HZ",
     )
     samples: int = setting(
-        "samples of a period; a notice says if a channel needs more; default: %(default)s", 128, type=int, metavar="N"
+        "samples of a period; notices name channels that need more; default: %(default)s", 128, type=int, metavar="N"
     )
 
 
@@ -126,7 +128,7 @@ def cut_frequency(text: str) -> float:
     matched = re.fullmatch(r"\s*([\d.eE+-]+)\s*(?:Hz)?\s*", text)
     values = finite_numbers(matched[1], ",") if matched else []
     if not values or values[0] <= 0.0:
-        raise ConfigurationError(f"--at {text}: must be a frequency above 0, for example --at \"3.7 Hz\"")
+        raise ConfigurationError(f'--at {text}: must be a frequency above 0, for example --at "3.7 Hz"')
     return values[0]
 
 
@@ -156,9 +158,7 @@ def _job(settings: LevelSettings, console: Console) -> None:
         at = {frequency: states([frequency]) for frequency in cuts}
     finally:
         progress.stop()
-    files = write_levels(
-        folder, report, at, force=settings.destination.force, figures=settings.figures, protect=inputs
-    )
+    files = write_levels(folder, report, at, force=settings.destination.force, figures=settings.figures, protect=inputs)
     text = "\n".join([printed(report, folder, files), *(printed_cut(report, cut) for cut in at.values())])
     console.result(summary_of(report, files), text)
     for notice in report.states.notices:

@@ -1,6 +1,5 @@
 """The splitting on systems that are known in closed form: Den Hartog's oscillator, linear limits, energy."""
 
-
 from types import SimpleNamespace
 
 import numpy as np
@@ -71,7 +70,7 @@ def test_den_hartog(ratio, samples):
 
 @pytest.mark.parametrize("stuck", [True, False])
 def test_linear_limits(stuck):
-    """A millionth of the unsticking level, and a friction of nearly nothing: the matrices with stuck or sliding dampers."""
+    """A small level, and almost no friction: the matrices with stuck or with sliding dampers."""
     friction = {"smoothing": 1e8} if stuck else {"coulomb_friction": 1e-9}
     frequency, level = np.array([1.5, 4.0, 9.0, 14.0]), 1e-8 if stuck else 1e-2
     names = ["knuckle_fr_acc_z", "suspension_mount_fr_acc_z"]
@@ -120,5 +119,3 @@ def test_more_samples_change_little():
         for samples in (128, 1024)
     )
     assert np.max(np.abs(coarse / fine - 1.0)) < 1e-3
-
-

@@ -76,7 +76,9 @@ def plot_level_map(path: Path, data: LevelPicture, rows: Sequence[int], title: s
         _legend(left)
         colours = colormaps["plasma"](np.linspace(0.0, 0.88, len(rows)))
         for row, colour in zip(rows, colours, strict=True):
-            right.plot(data.frequency, data.size[:, row], color=colour, label=f"{data.level[row]:.3g} mm", linewidth=1.3)
+            right.plot(
+                data.frequency, data.size[:, row], color=colour, label=f"{data.level[row]:.3g} mm", linewidth=1.3
+            )
         right.set(xscale="log", yscale="log", xlim=data.frequency[[0, -1]], xlabel="frequency [Hz]", ylabel=data.label)
         right.yaxis.set_major_formatter(power_of_ten)
         _frequency_ticks(right, data.frequency)

@@ -1,13 +1,13 @@
 """Proof that a car has only one periodic state with a period.
 
-For two answers w = W - G p the differences obey <dp, dw> = -<dp, G dp>. A law that never falls has <dp, dw> >= 0, so
-dp = 0 if the Hermitian part of G is positive at every harmonic. A law that falls by at most m has <dp, dw> >= -m |dw|^2,
-and dw = 0 if the Hermitian part of G^-1 exceeds m. Elements with memory over a displacement x obey the same over the
-velocity x', and over that their mean force and the place of their sliders remain open, not the motion.
+The differences of two states w = W - G p obey <dp, dw> = -<dp, G dp>. A law that never falls has <dp, dw> >= 0, so
+dp = 0 if the Hermitian part of G is positive at every harmonic. A law that falls by at most m has
+<dp, dw> >= -m |dw|^2, and dw = 0 if the Hermitian part of G^-1 exceeds m. Jenkins elements over a displacement x obey
+the same over the velocity x': the motion is unique, but not the mean force of their sliders.
 
-Nothing is proven of laws over a displacement without memory (stops, tables, one-sided tyres), as a mass beyond its
-resonance moves against its force, of rubber friction, a part of whose stiffness is in the matrices, and of rolling
-tyres, whose force changes with the load times the motion of the plate.
+The proof does not cover stops, tables and one-sided tyres: above its resonance a mass moves against its force. It does
+not cover rubber friction either, because the matrices contain a part of its stiffness, nor rolling tyres, because their
+force is a product of the load and the motion of the plate.
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ ROUND_OFF = 1e-10
 """Smallest eigenvalue that counts as positive, over the largest response of the ports."""
 
 
-def one_answer(ports: Sequence[Port], effects: Complex, speeds: Vector, cycle: Cycle, *, rolling: bool) -> Mask:
+def one_state(ports: Sequence[Port], effects: Complex, speeds: Vector, cycle: Cycle, *, rolling: bool) -> Mask:
     """Return True at the frequencies at which the proof holds, at the harmonics that are computed; (f,).
 
     Args:
@@ -42,7 +42,7 @@ def one_answer(ports: Sequence[Port], effects: Complex, speeds: Vector, cycle: C
     falls = np.array([port.fall for port in ports])
     if falls.any():
         mobility = np.linalg.inv(mobility)
-    # Of ports of different size, each in proportion to its own response.
+    # Scaled by the response of each port, because the ports have different units.
     size = np.sqrt(np.abs(np.einsum("fkii->fki", mobility)))
     hermitian = 0.5 * (mobility + np.conj(np.swapaxes(mobility, -1, -2))) - np.diag(falls)
     least = np.linalg.eigvalsh(hermitian / (size[..., :, None] * size[..., None, :]))[..., 0]

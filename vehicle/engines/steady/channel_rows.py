@@ -19,7 +19,7 @@ class ChannelRows:
     """Rows of channels, without their values at rest.
 
     Attributes:
-        outputs: rows over the poles and the plates; those of accelerations are displacements.
+        outputs: rows over the poles and the plates; an acceleration has the row of its displacement.
         forces: rows over the forces p of the base columns at the same instant, as they act in y = Y0 z - Y p; (rows,
             base).
         slopes: rows over the slope velocities of rolling tyres at the same instant; (rows, w), (rows, 0).
@@ -87,9 +87,7 @@ def _row(model: PoleModel, name: str, loads: LoadRows) -> ChannelRows:
     wheels, dampers = model.matrices.system.inputs, model.matrices.damper_names
     if name in model.matrices.system.outputs:
         rows = plain_rows(model, model.outputs([name]))
-        return ChannelRows(
-            outputs=rows.outputs, forces=rows.forces, slopes=rows.slopes, accelerations=np.array([True])
-        )
+        return ChannelRows(outputs=rows.outputs, forces=rows.forces, slopes=rows.slopes, accelerations=np.array([True]))
     if name in [f"tyre_{wheel}_force_z" for wheel in wheels]:
         return tyre_rows(model, [name.removeprefix("tyre_").removesuffix("_force_z")])
     damper, _, quantity = name.rpartition("_")

@@ -29,7 +29,7 @@ def strongest(model: PoleModel, damping: Vector, row: Complex, plates: Complex, 
     values, vectors = np.linalg.eig(matrix - (effects * (damping - model.matrices.viscous)) @ rows)
     s, pairs = 2j * np.pi * frequency, model.pairs
     residue = (model.height + s * model.velocity) @ plates
-    # The response to the real plate is that of both conjugates: both get the same input.
+    # The input of a stored pole is complex, that of its conjugate the conjugate residue times the same plate.
     given = np.concatenate([residue, ((model.height + s * model.velocity).conj()[:pairs] @ plates)])
     half = np.concatenate([0.5 * row[:pairs], row[pairs:], 0.5 * row[:pairs].conj()])
     given[pairs : len(residue)] = residue[pairs:].real
@@ -39,11 +39,16 @@ def strongest(model: PoleModel, damping: Vector, row: Complex, plates: Complex, 
 
 
 def followed(model: PoleModel, pole: complex, first: Vector, last: Vector) -> complex:
-    """Return the pole that a pole becomes while the damping constants change from one set to another; NaN if it is lost.
+    """Return the pole that a pole becomes while the damping constants change; NaN if it is lost.
 
-    A pole s of the car with viscous dampers has det(1 + T (c - D)) = 0, T = row (s - poles)^-1 effect: d equations in
-    place of those of all states. Newton's method for the logarithm of the determinant, whose derivative is the trace of
+    A pole s of the car with viscous dampers has det(1 + T (c - D)) = 0 with T = row (s - poles)^-1 effect, a
+    determinant of d rows. Newton's method solves it: the derivative of its logarithm is the trace of
     (1 + T (c - D))^-1 T' (c - D).
+
+    Args:
+        model: pole model.
+        pole: pole with the first damping constants [rad/s].
+        first, last: damping constants [N s/m]; (d,) each.
     """
     matrix, effects, rows = _parts(model)
     poles, own = np.diag(matrix), model.matrices.viscous

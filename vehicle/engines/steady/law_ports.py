@@ -105,7 +105,9 @@ class Polygon(Port):
         beyond = np.full((len(knots), 1), np.inf)
         edges = np.hstack([-beyond, knots, beyond])
         # The part of each segment on the way from 0 to x is clip(x) - clip(0).
-        result = np.zeros_like(x) - (slopes * np.clip(0.0, edges[:, :-1], edges[:, 1:])).sum(axis=1, keepdims=x.ndim > 1)
+        result = np.zeros_like(x) - (slopes * np.clip(0.0, edges[:, :-1], edges[:, 1:])).sum(
+            axis=1, keepdims=x.ndim > 1
+        )
         part = np.empty_like(x)
         for segment in np.flatnonzero(self.slopes):
             low, high = (edges[:, end : end + 1] if x.ndim > 1 else edges[0, end] for end in (segment, segment + 1))
@@ -181,7 +183,7 @@ STEPS = 60
 """Maximum number of Newton steps: with bisection alone a bracket shrinks below round-off in 60."""
 
 ROUND_OFF = 1e-12
-"""Accuracy of the sum of a law of friction over its size, far below that of the iteration."""
+"""Relative accuracy of the Newton iteration, far finer than the accuracy of the splitting."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

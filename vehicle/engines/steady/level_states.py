@@ -12,7 +12,7 @@ from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.validity import rotating_bodies, rotation_outputs
 from vehicle.engines.steady.car_ports import CarPorts, car_ports
-from vehicle.engines.steady.certificate import one_answer
+from vehicle.engines.steady.certificate import one_state
 from vehicle.engines.steady.channel_rows import channel_rows, plain_rows, tyre_rows
 from vehicle.engines.steady.cycle import Cycle
 from vehicle.engines.steady.law_ports import Play, Polygon, Port, Stribeck
@@ -32,7 +32,7 @@ class LevelStates:
         frf: first harmonic of each channel over the level, complex, unit/m; (c, f, l).
         rms: root mean square of a period without its mean; (c, f, l).
         peak: largest absolute value; (c, f, l).
-        distortion: RMS of the higher harmonics over that of the first; (c, f, l).
+        distortion: RMS of the higher harmonics divided by the RMS of the first; (c, f, l).
         unresolved: share of the RMS in the upper half of the harmonics; (c, f, l).
         slip: share of the period in which each damper slips, faster than its friction line; NaN for a damper without
             one; (d, f, l).
@@ -148,7 +148,9 @@ class _Study:
         rows = plate_motion - np.einsum("nrik,nik->nrk", table.forces[:, :, self.at][at], amplitudes)
         if self.rolling:
             rows += np.einsum("nrwk,nwk->nrk", table.slopes[at], found.slope)
-        figures = self._channels(rows, height) | self._dampers(rows, found, amplitudes, np.repeat(frequency, len(level)))
+        figures = self._channels(rows, height) | self._dampers(
+            rows, found, amplitudes, np.repeat(frequency, len(level))
+        )
         figures["angle"] = self._angles(frequency, height, at, found, amplitudes)
         hidden = ~found.ended
         for name, values in figures.items():
@@ -158,7 +160,7 @@ class _Study:
             values.reshape(count, len(level)) for values in (found.ended, found.iterations)
         )
         figures["first"] = self._first(forces[..., one], drive[:, :, one])
-        figures["unique"] = one_answer(self.ports, forces, self._speeds(frequency), self.cycle, rolling=self.rolling)
+        figures["unique"] = one_state(self.ports, forces, self._speeds(frequency), self.cycle, rolling=self.rolling)
         return figures
 
     def _speeds(self, frequency: Vector) -> Vector:

@@ -6,8 +6,9 @@ the Douglas-Rachford iteration finds both,
     x = (1 + lambda G)^-1 (s + lambda W),   y = phi(w), y + lambda w = 2 x - s,   s <- s + 1.6 (y - x),
 
 which converges if G is positive and phi rises (Lions and Mercier, SIAM J. Numer. Anal. 16, 1979): both resolvents are
-firmly nonexpansive. Anderson acceleration combines the last steps of each point (Walker and Ni, SIAM J. Numer. Anal. 49,
-2011); nothing is proven of it, so a point whose residual grows forgets its past steps, and takes the plain step.
+firmly nonexpansive. Anderson acceleration combines the last steps of each point (Walker and Ni, SIAM J. Numer. Anal.
+49, 2011). Its convergence is not proven: if the residual of a point grows, its past steps are deleted and the plain
+step is taken.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ PAST = 8
 """Number of past steps of Anderson acceleration."""
 
 GROWN = 10.0
-"""Growth of the residual above its smallest value at which a point forgets its past steps."""
+"""Growth of the residual above its minimum at which the past steps of a point are deleted."""
 
 LOST = 0.1
 """Residual over the largest force from which a further scaling goes on; with a larger one it begins at zero."""

@@ -6,12 +6,12 @@ import cmath
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.arrays import Vector
+from vehicle.arrays import Mask, Vector
 from vehicle.digits import beside_limit, number
 from vehicle.engines.reduced.validity import LARGEST_ANGLE
 from vehicle.engines.steady.car_ports import car_ports
@@ -21,9 +21,6 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import axle_and_side, channel_units
 
-if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
-
 Plates = str | Mapping[str, complex]
 """Motion of the plates: a name, shares as text, or the share of each wheel as a complex number."""
 
@@ -31,7 +28,7 @@ MOTIONS = ("heave", "pitch", "roll", "warp")
 """Names of motions of all plates."""
 
 LOWEST_ROLLING = 1.0
-"""Lowest frequency of rolling tyres [Hz]: below, a car that rolls may amplify its own motion."""
+"""Minimum frequency for rolling tyres [Hz]: at lower frequencies a rolling car may amplify its own motion."""
 
 LEAST_SAMPLES, MOST_SAMPLES = 32, 8192
 """Samples of a period."""
@@ -57,7 +54,7 @@ class LevelMap(LevelStates):
         dampers: names of the dampers.
     """
 
-    car: Car
+    car: Any
     plates: dict[str, complex]
     frequency: Vector
     level: Vector
@@ -76,6 +73,11 @@ class LevelMap(LevelStates):
     def units(self) -> dict[str, str]:
         """Unit of each channel."""
         return channel_units(self.channels)
+
+    @property
+    def outside(self) -> Mask:
+        """True where a part rotates too far for the linear geometry, or a linear tyre pulls; (f, l)."""
+        return np.asarray((self.angle > LARGEST_ANGLE) | (self.load < 0.0))
 
     @property
     def unsticking(self) -> Vector:
@@ -150,7 +152,7 @@ class LevelMap(LevelStates):
 
     @property
     def notices(self) -> list[str]:
-        """What a reader of the figures has to know."""
+        """Limits of the results, for the reader."""
         left, texts = int(np.sum(~self.ended)), []
         if left:
             texts.append(f"{left} of {self.ended.size} points have no result: the iteration did not end there")
@@ -176,9 +178,7 @@ class LevelMap(LevelStates):
 
     def at(self, frequency: float) -> LevelMap:
         """Return the states at one frequency [Hz] and the same levels, computed there."""
-        return car_levels(
-            self.car, plates=self.plates, frequency=[frequency], level=self.level, channels=self.channels
-        )
+        return car_levels(self.car, plates=self.plates, frequency=[frequency], level=self.level, channels=self.channels)
 
 
 def crossing(level: Vector, effort: Vector) -> float:
@@ -207,7 +207,7 @@ def _vertex(frequency: Vector, values: Vector) -> tuple[float, float]:
 
 
 def car_levels(
-    car: Car,
+    car: Any,
     *,
     plates: Plates = "heave",
     frequency: npt.ArrayLike,
@@ -222,9 +222,7 @@ def car_levels(
     if len(lines) * len(levels) > MOST:
         raise ConfigurationError(f"levels: {len(lines) * len(levels)} points, must be at most {MOST}; take fewer")
     if samples % 2 or not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
-        raise ConfigurationError(
-            f"samples {samples}: must be an even number from {LEAST_SAMPLES} to {MOST_SAMPLES}"
-        )
+        raise ConfigurationError(f"samples {samples}: must be an even number from {LEAST_SAMPLES} to {MOST_SAMPLES}")
     shares = plate_shares(plates, car.vehicle.wheels)
     if car.matrices.slope.size and lines[0] < LOWEST_ROLLING:
         raise ConfigurationError(

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
 from vehicle.threads import one_blas_thread
 
 if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
     from vehicle.runs.car.levels import LevelMap, Plates
 
 
@@ -28,7 +27,7 @@ class SteadyCar:
         samples: int = 128,
         progress: Callable[[float], None] | None = None,
     ) -> LevelMap:
-        """Return the periodic states over frequency and level of the car with all its laws, on plates that move as sines.
+        """Return the periodic states of the car with all its laws over frequency and level, on sinusoidal plates.
 
         At each pair of both the first harmonic (FRF), RMS, peak and distortion of the channels, slip and energy of the
         dampers; the level at which each damper begins to slip, and the damping that is left.
@@ -39,7 +38,7 @@ class SteadyCar:
             plates: heave, pitch, roll or warp; a wheel; shares with phases in degrees as "fl=1,fr=1@90"; or a
                 dictionary of complex numbers.
             channels: names or words of channels that respond to the plates, loads too.
-            samples: samples of a period; a notice says if a channel needs more.
+            samples: samples of a period; a notice names channels that need more.
             progress: called with the finished fraction.
 
         Raises:
@@ -49,7 +48,7 @@ class SteadyCar:
         from vehicle.runs.car.levels import car_levels
 
         return car_levels(
-            cast("Car", self),
+            self,
             plates=plates,
             frequency=frequency,
             level=level,

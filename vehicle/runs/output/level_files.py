@@ -13,7 +13,6 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
 from vehicle.drawing.rendering.level_plot import LevelPicture, peaks_of, plot_level_damping, plot_level_map
-from vehicle.engines.reduced.validity import LARGEST_ANGLE
 from vehicle.names import channel_words, side_of, wheel_words
 from vehicle.runs.car.levels import MOTIONS, LevelMap
 from vehicle.runs.output.folder import output_folder, write_files, write_json
@@ -35,7 +34,7 @@ class LevelReport:
 
     Attributes:
         states: the map.
-        plates: motion of the plates, as given.
+        plates: motion of the plates by its name or shares.
         band: band of the peak [Hz]; by default around the peak at the lowest level that falls most.
     """
 
@@ -92,14 +91,13 @@ class LevelReport:
     def lines(self) -> dict[str, Vector]:
         """Level at which each damper, or the first of an axle, begins to slip [mm]; (f,) each."""
         slips = 1e3 * self.states.unsticking
+        known = {name: line for name, line in zip(self.states.dampers, slips, strict=True) if np.isfinite(line).any()}
         if len(slips) <= SEVERAL:
-            return {f"{self.words(name)} begins to slip": line for name, line in zip(self.states.dampers, slips, strict=True)
-                    if np.isfinite(line).any()}  # fmt: skip
+            return {f"{self.words(name)} begins to slip": line for name, line in known.items()}
         axles: dict[str, list[Vector]] = {}
-        for name, line in zip(self.states.dampers, slips, strict=True):
+        for name, line in known.items():
             axles.setdefault(self.words(name).split()[0], []).append(line)
-        return {f"{axle}: the first damper begins to slip": np.fmin.reduce(lines) for axle, lines in axles.items()
-                if np.isfinite(lines).any()}  # fmt: skip
+        return {f"{axle}: the first damper begins to slip": np.fmin.reduce(lines) for axle, lines in axles.items()}
 
     def first_slip(self) -> dict[str, tuple[float, float]]:
         """Return the lowest level at which each damper begins to slip [m], and its frequency [Hz], by damper."""
@@ -125,7 +123,7 @@ class LevelReport:
             size=np.abs(states.frf[channel]),
             label=f"{channel_words(name)}, first harmonic / plate [({unit})/m]",
             slipping=self.lines,
-            outside=(states.angle > LARGEST_ANGLE) | (states.load < 0.0),
+            outside=states.outside,
         )
 
     @property
@@ -205,7 +203,9 @@ def summary_of(report: LevelReport, files: Sequence[str]) -> dict[str, Any]:
         "without_result": int(np.sum(~states.ended)),
         "iterations": {"mean": float(states.iterations.mean()), "largest": int(states.iterations.max())},
         "only_one_state_proven": states.unique.tolist(),
-        "first_slip": {name: {"level_mm": 1e3 * level, "frequency_hz": at} for name, (level, at) in report.first_slip().items()},
+        "first_slip": {
+            name: {"level_mm": 1e3 * level, "frequency_hz": at} for name, (level, at) in report.first_slip().items()
+        },
         "band_hz": list(report.around),
         "peak": [
             {"level_mm": 1e3 * level, "frequency_hz": _number(f), "frf": _number(value), "mode_hz": _number(mode),
