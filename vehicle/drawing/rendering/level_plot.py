@@ -20,7 +20,7 @@ SIZE = (12.0, 5.9)
 """Width and height of the map with its FRFs [inch]."""
 
 PRONOUNCED = 1.12
-"""Height of a peak above the valleys beside it that is drawn [-]: 1 dB."""
+"""Minimum height of a peak over its valleys [-]: 1 dB."""
 
 LINKED = 0.12
 """Largest change of ln f from one level to the next along the line of a peak."""
@@ -54,7 +54,7 @@ class LevelPicture:
 
 
 def plot_level_map(path: Path, data: LevelPicture, rows: Sequence[int], title: str, caption: str) -> None:
-    """Write the map of the FRF over frequency and level, and beside it the FRFs at some levels.
+    """Write the map of the FRF over frequency and level, and the FRFs at some levels.
 
     Args:
         path: PNG or SVG file.
@@ -156,27 +156,27 @@ def ridges(frequency: Vector, size: Vector) -> list[tuple[Vector, Any]]:
     lines: list[list[tuple[float, int]]] = []
     for row, values in enumerate(size.T):
         for peak in peaks_of(values):
-            place = float(frequency[peak])
-            near = [line for line in lines if line[-1][1] == row - 1 and abs(np.log(place / line[-1][0])) < LINKED]
+            centre = float(frequency[peak])
+            near = [line for line in lines if line[-1][1] == row - 1 and abs(np.log(centre / line[-1][0])) < LINKED]
             if near:
-                min(near, key=lambda line: abs(np.log(place / line[-1][0]))).append((place, row))
+                min(near, key=lambda line: abs(np.log(centre / line[-1][0]))).append((centre, row))
             else:
-                lines.append([(place, row)])
+                lines.append([(centre, row)])
     return [(np.array([at for at, _ in line]), [row for _, row in line]) for line in lines if len(line) > 2]
 
 
 def peaks_of(values: Vector) -> list[int]:
-    """Return the indices of maxima that stand out of both valleys beside them."""
+    """Return the indices of the maxima that exceed both of their valleys by `PRONOUNCED`."""
     inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
-    found = []
+    indices = []
     for index in inner.tolist():
         higher = np.flatnonzero(values > values[index])
         low, high = higher[higher < index], higher[higher > index]
         before = values[(low[-1] if low.size else 0) : index].min()
         after = values[index + 1 : (high[0] + 1 if high.size else len(values))].min()
         if values[index] > PRONOUNCED * max(before, after):
-            found.append(index)
-    return found
+            indices.append(index)
+    return indices
 
 
 def _map(axes: Axes, data: LevelPicture, values: Vector, colours: str) -> Any:
@@ -188,7 +188,7 @@ def _map(axes: Axes, data: LevelPicture, values: Vector, colours: str) -> Any:
     table.set_bad("#b0b0b0")
     low, high = np.nanmin(values), np.nanmax(values)
     norm = LogNorm(low, max(high, 1.001 * low))
-    # Colours between the points, except beside points without a result.
+    # Interpolate the colours, unless a point has no result.
     smooth = bool(np.isfinite(values).all()) and min(values.shape) > 1
     x, y = (data.frequency, data.level) if smooth else (_edges(data.frequency), _edges(data.level))
     image = axes.pcolormesh(
@@ -238,7 +238,7 @@ def _frequency_ticks(axes: Axes, frequency: Vector) -> None:
 
 
 def _plain_log(axis: Any, values: Vector) -> None:
-    """Label some numbers of each decade of a logarithmic axis, more of them on a short one."""
+    """Set tick labels of a logarithmic axis, more in each decade of a short axis."""
     finite = values[np.isfinite(values) & (values > 0.0)]
     if not finite.size:
         return

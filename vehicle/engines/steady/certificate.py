@@ -45,5 +45,5 @@ def one_state(ports: Sequence[Port], effects: Complex, speeds: Vector, cycle: Cy
     # Scaled by the response of each port, because the ports have different units.
     size = np.sqrt(np.abs(np.einsum("fkii->fki", mobility)))
     hermitian = 0.5 * (mobility + np.conj(np.swapaxes(mobility, -1, -2))) - np.diag(falls)
-    least = np.linalg.eigvalsh(hermitian / (size[..., :, None] * size[..., None, :]))[..., 0]
-    return np.asarray((least > ROUND_OFF).all(axis=1))
+    smallest = np.linalg.eigvalsh(hermitian / (size[..., :, None] * size[..., None, :]))[..., 0]
+    return np.asarray((smallest > ROUND_OFF).all(axis=1))

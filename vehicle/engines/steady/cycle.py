@@ -26,17 +26,17 @@ class Cycle:
 
     @property
     def stored(self) -> int:
-        """Number of samples that are stored: n, or n/2 of an odd motion."""
+        """Return the number of samples that are stored: n, or n/2 of an odd motion."""
         return self.samples // 2 if self.odd else self.samples
 
     @property
     def sign(self) -> float:
-        """Factor of the stored samples in their continuation: -1 for an odd motion."""
+        """Return the factor of the stored samples in their continuation: -1 for an odd motion."""
         return -1.0 if self.odd else 1.0
 
     @cached_property
     def harmonics(self) -> Indices:
-        """Harmonics k of the motion, below the Nyquist frequency; (k,)."""
+        """Return the harmonics k of the motion, below the Nyquist frequency; (k,)."""
         return np.arange(1, self.samples // 2, 2) if self.odd else np.arange(self.samples // 2)
 
     def amplitudes(self, samples: Vector) -> Complex:

@@ -1,4 +1,4 @@
-"""Mode of a car whose dampers are replaced by viscous ones."""
+"""Mode of a car with viscous dampers of equal energy."""
 
 import numpy as np
 
@@ -29,11 +29,11 @@ def strongest(model: PoleModel, damping: Vector, row: Complex, plates: Complex, 
     values, vectors = np.linalg.eig(matrix - (effects * (damping - model.matrices.viscous)) @ rows)
     s, pairs = 2j * np.pi * frequency, model.pairs
     residue = (model.height + s * model.velocity) @ plates
-    # The input of a stored pole is complex, that of its conjugate the conjugate residue times the same plate.
-    given = np.concatenate([residue, ((model.height + s * model.velocity).conj()[:pairs] @ plates)])
+    # The residue of a conjugate pole is the conjugate residue; both poles have the same plates.
+    inputs = np.concatenate([residue, ((model.height + s * model.velocity).conj()[:pairs] @ plates)])
     half = np.concatenate([0.5 * row[:pairs], row[pairs:], 0.5 * row[:pairs].conj()])
-    given[pairs : len(residue)] = residue[pairs:].real
-    part = (half @ vectors) * np.linalg.solve(vectors, given) / (s - values)
+    inputs[pairs : len(residue)] = residue[pairs:].real
+    part = (half @ vectors) * np.linalg.solve(vectors, inputs) / (s - values)
     oscillating = values.imag > 0.0
     return complex(values[oscillating][np.argmax(np.abs(part[oscillating]))])
 
@@ -51,9 +51,9 @@ def followed(model: PoleModel, pole: complex, first: Vector, last: Vector) -> co
         first, last: damping constants [N s/m]; (d,) each.
     """
     matrix, effects, rows = _parts(model)
-    poles, own = np.diag(matrix), model.matrices.viscous
+    poles, viscous = np.diag(matrix), model.matrices.viscous
     for share in np.arange(1, STEPS + 1) / STEPS:
-        more = (first - own) ** (1.0 - share) * (last - own) ** share
+        more = (first - viscous) ** (1.0 - share) * (last - viscous) ** share
         for _ in range(NEWTON):
             factor = 1.0 / (pole - poles)
             table = (rows * factor) @ effects * more

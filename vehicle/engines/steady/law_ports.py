@@ -32,12 +32,12 @@ class Port(ABC):
     @property
     @abstractmethod
     def fall(self) -> float:
-        """Largest fall of p over w, -d phi/dw; 0 of a law that never falls."""
+        """Return the largest fall of p over w, -d phi/dw; 0 of a law that never falls."""
 
     @property
     @abstractmethod
     def odd(self) -> bool:
-        """True if phi(-w) = -phi(w)."""
+        """Return True if phi(-w) = -phi(w)."""
 
     def scaling(self, effect: Vector) -> Vector:
         """Return lambda by |G| of the port at the fundamental frequency; of the same shape."""
@@ -139,7 +139,7 @@ class Stribeck(Port):
 
     @property
     def fall(self) -> float:
-        """See `Port`; the largest -dL/dv beyond the friction line."""
+        """Return the largest -dL/dv beyond the friction line."""
         v = np.geomspace(self.full, 20.0 * float(np.max(self.law.stribeck_velocity)) + self.full, 4000)
         return float(np.max(-self.law.fall_at(v, self.law) / v))
 
@@ -153,7 +153,7 @@ class Stribeck(Port):
         return self.curve.at(motion) + self.law.limit(motion) * np.clip(motion / self.full, -1.0, 1.0)
 
     def force(self, sums: Vector, scaling: Vector, sign: float) -> Vector:
-        """See `Port`: Newton's method for phi(v) + lambda v = u between the motions with the limits Fd and Fs."""
+        """Solve phi(v) + lambda v = u by Newton's method, between the motions with the limits Fd and Fs; see `Port`."""
         ends = [(sums - each.force(sums, scaling, sign)) / scaling for each in (self.sliding, self.static)]
         low, high = np.minimum(*ends), np.maximum(*ends)
         # A stuck damper has the limit Fs, and one far beyond vs the limit Fd.
@@ -164,12 +164,15 @@ class Stribeck(Port):
         for _ in range(STEPS):
             if not at[0].size:
                 break
-            here, factor = v[at], scaling[at]
-            excess, moving = self.at(here) + factor * here - sums[at], np.where(here == 0.0, self.full, np.abs(here))
-            low[at], high[at] = np.where(excess < 0.0, here, low[at]), np.where(excess > 0.0, here, high[at])
-            slope = factor + np.minimum(moving / self.full, 1.0) * self.law.fall_at(here, self.law) / moving
-            slope += (moving < self.full) * self.law.limit(here) / self.full
-            new = here - excess / slope
+            velocity, factor = v[at], scaling[at]
+            excess, moving = (
+                self.at(velocity) + factor * velocity - sums[at],
+                np.where(velocity == 0.0, self.full, np.abs(velocity)),
+            )
+            low[at], high[at] = np.where(excess < 0.0, velocity, low[at]), np.where(excess > 0.0, velocity, high[at])
+            slope = factor + np.minimum(moving / self.full, 1.0) * self.law.fall_at(velocity, self.law) / moving
+            slope += (moving < self.full) * self.law.limit(velocity) / self.full
+            new = velocity - excess / slope
             v[at] = np.where((new > low[at]) & (new < high[at]), new, 0.5 * (low[at] + high[at]))
             wrong = np.abs(excess) > accuracy[at]
             at = (at[0][wrong], at[1][wrong])
@@ -220,10 +223,10 @@ class Play(Port):
         return np.full_like(effect, RUBBER * self.stiffness.sum()) if self.kept else Port.scaling(self, effect)
 
     def force(self, sums: Vector, scaling: Vector, sign: float) -> Vector:
-        """See `Port`: with l = lambda - c, H + l x = u and p = H - c (u - H)/l."""
-        rest = scaling - self.kept
-        elements = self._elements(sums, rest, sign)
-        return np.asarray(elements - self.kept * (sums - elements) / rest)
+        """Return p = H - c (u - H)/l with l = lambda - c and H + l x = u; see `Port`."""
+        reduced = scaling - self.kept
+        elements = self._elements(sums, reduced, sign)
+        return np.asarray(elements - self.kept * (sums - elements) / reduced)
 
     def _elements(self, sums: Vector, scaling: Vector, sign: float) -> Vector:
         """Return H of u = H + lambda x in the second of two periods, in which the elements repeat their forces."""

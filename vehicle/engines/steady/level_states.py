@@ -132,34 +132,34 @@ class _Study:
 
     def part(self, frequency: Vector, level: Vector) -> dict[str, Complex | Vector | Mask | Indices]:
         """Return the figures at some frequencies and all levels."""
-        one, count = self.fundamental, len(frequency)
+        first_line, count = self.fundamental, len(frequency)
         table = self._by_frequency(self.plant.responses(self._speeds(frequency).ravel()), count)
         forces, drive = table.forces[:, self.at][:, :, self.at], table.plates[:, :, 0]
-        effect = np.abs(forces[:, range(len(self.at)), range(len(self.at)), one])
+        effect = np.abs(forces[:, range(len(self.at)), range(len(self.at)), first_line])
         scaling = np.stack([port.scaling(effect[:, index]) for index, port in enumerate(self.ports)], axis=1)
         at, height = np.repeat(np.arange(count), len(level)), np.tile(level, count)
         plate_motion = np.zeros((len(at), drive.shape[1], len(self.cycle.harmonics)), dtype=complex)
-        plate_motion[:, :, one] = drive[at, :, one] * height[:, None]
+        plate_motion[:, :, first_line] = drive[at, :, first_line] * height[:, None]
         present = self._present(frequency, height, at, table, plate_motion) if self.rolling else None
-        found = periodic_forces(
+        periodic = periodic_forces(
             self.ports, self.cycle, forces[at], plate_motion[:, self.at], scaling[at], present=present
         )
-        amplitudes = self.cycle.amplitudes(found.force)
+        amplitudes = self.cycle.amplitudes(periodic.force)
         rows = plate_motion - np.einsum("nrik,nik->nrk", table.forces[:, :, self.at][at], amplitudes)
         if self.rolling:
-            rows += np.einsum("nrwk,nwk->nrk", table.slopes[at], found.slope)
+            rows += np.einsum("nrwk,nwk->nrk", table.slopes[at], periodic.slope)
         figures = self._channels(rows, height) | self._dampers(
-            rows, found, amplitudes, np.repeat(frequency, len(level))
+            rows, periodic, amplitudes, np.repeat(frequency, len(level))
         )
-        figures["angle"] = self._angles(frequency, height, at, found, amplitudes)
-        hidden = ~found.ended
+        figures["angle"] = self._angles(frequency, height, at, periodic, amplitudes)
+        hidden = ~periodic.ended
         for name, values in figures.items():
             values[..., hidden] = np.nan
             figures[name] = values.reshape(*values.shape[:-1], count, len(level))
         figures["ended"], figures["iterations"] = (
-            values.reshape(count, len(level)) for values in (found.ended, found.iterations)
+            values.reshape(count, len(level)) for values in (periodic.ended, periodic.iterations)
         )
-        figures["first"] = self._first(forces[..., one], drive[:, :, one])
+        figures["first"] = self._first(forces[..., first_line], drive[:, :, first_line])
         figures["unique"] = one_state(self.ports, forces, self._speeds(frequency), self.cycle, rolling=self.rolling)
         return figures
 
@@ -194,18 +194,18 @@ class _Study:
 
     def _channels(self, rows: Complex, height: Vector) -> dict[str, Complex | Vector]:
         """Return the figures of the channels and the smallest tyre load."""
-        one, k = self.fundamental, self.cycle.harmonics
+        first_line, k = self.fundamental, self.cycle.harmonics
         tyres = slice(self.plant.base, self.plant.base + len(self.static))
         channels = np.moveaxis(rows[:, tyres.stop :], 0, 1)
         power = 0.5 * np.abs(channels) ** 2 * (k > 0)
-        total, first = power.sum(axis=-1), power[..., one]
+        total, first = power.sum(axis=-1), power[..., first_line]
         upper = power[..., k >= self.cycle.samples // 4].sum(axis=-1)
         lowest = 1.0 + (self.cycle.histories(rows[:, tyres]) / self.static[:, None]).min(axis=(1, 2))
         if self.cycle.odd:
             lowest = 1.0 - np.abs(self.cycle.histories(rows[:, tyres]) / self.static[:, None]).max(axis=(1, 2))
         with np.errstate(divide="ignore", invalid="ignore"):
             return {
-                "frf": channels[..., one] / height,
+                "frf": channels[..., first_line] / height,
                 "rms": np.sqrt(total),
                 "peak": np.abs(self.cycle.histories(channels)).max(axis=-1),
                 "distortion": np.sqrt((total - first) / first),
@@ -214,7 +214,7 @@ class _Study:
             }
 
     def _dampers(
-        self, rows: Complex, found: PeriodicForces, amplitudes: Complex, frequency: Vector
+        self, rows: Complex, periodic: PeriodicForces, amplitudes: Complex, frequency: Vector
     ) -> dict[str, Complex | Vector]:
         """Return the figures of the dampers."""
         count, points = len(self.dampers), len(rows)
@@ -225,7 +225,7 @@ class _Study:
             if port.base < len(self.owners):
                 force[:, self.owners[port.base]] += amplitudes[:, index]
             if (full := full_velocity(port, self.dampers)) is not None:
-                motion = np.abs(found.motion[:, index])
+                motion = np.abs(periodic.motion[:, index])
                 slip[port.base] = np.mean(motion > full, axis=-1)
                 effort[port.base] = motion.max(axis=-1) / full
         power = 0.5 * (force * velocity.conj()).real.sum(axis=-1).T
@@ -234,16 +234,16 @@ class _Study:
             return {"slip": slip, "effort": effort, "energy": power / frequency, "equivalent": power / square}
 
     def _angles(
-        self, frequency: Vector, height: Vector, at: Indices, found: PeriodicForces, amplitudes: Complex
+        self, frequency: Vector, height: Vector, at: Indices, periodic: PeriodicForces, amplitudes: Complex
     ) -> Vector:
         """Return the largest rotation of a part about an axis, by the first harmonic."""
-        one = self.fundamental
+        first_line = self.fundamental
         table = self._by_frequency(self.turning.responses(2.0 * np.pi * frequency), len(frequency))
         table = Responses(forces=table.forces[..., 0], slopes=table.slopes[..., 0], plates=table.plates[..., 0])
         rows = table.plates[at, :, 0] * height[:, None]
-        rows -= np.einsum("nri,ni->nr", table.forces[:, :, self.at][at], amplitudes[..., one])
+        rows -= np.einsum("nri,ni->nr", table.forces[:, :, self.at][at], amplitudes[..., first_line])
         if self.rolling:
-            rows += np.einsum("nrw,nw->nr", table.slopes[at], found.slope[..., one])
+            rows += np.einsum("nrw,nw->nr", table.slopes[at], periodic.slope[..., first_line])
         return np.asarray(np.abs(rows[:, self.turning.base :]).max(axis=1))
 
     def _first(self, forces: Complex, drive: Complex) -> Vector:
@@ -261,7 +261,7 @@ class _Study:
 
 
 def full_velocity(port: Port, dampers: Sequence[Damper]) -> float | None:
-    """Return the velocity at which the friction line of a damper reaches its limit; None without such a line."""
+    """Return the velocity at which the friction line of a damper ends; None for a damper without a line."""
     if not port.of_velocity or dampers[port.base].friction_law == "presliding":
         return None
     if not dampers[port.base].static_friction:

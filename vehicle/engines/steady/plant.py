@@ -1,8 +1,8 @@
 """Linear car between its ports, its plates and its outputs, from its poles.
 
 At the angular frequency w every motion of the car is y = Y0 z - Y p with the plates z and the forces p of the ports,
-which act against their motions. The base rows are the velocities of the dampers, the displacements of the groups of
-Jenkins elements and those of the laws over displacement; their forces are the base columns.
+which act against their motions. The base rows are damper velocities, then displacements of Jenkins
+groups and of laws over displacement. The base columns are the forces of the same elements.
 """
 
 from __future__ import annotations

@@ -116,7 +116,7 @@ def periodic_forces(
     limit: int = 250,
     ladder: Sequence[tuple[float, float]] = LADDER,
 ) -> PeriodicForces:
-    """Return the periodic forces of the ports at n points, each a car and a drive of its own.
+    """Return the periodic forces of the ports at n points with different cars and drives.
 
     Args:
         ports: the laws.
@@ -124,7 +124,7 @@ def periodic_forces(
         effects: G, motion of each port against a force of each; (n, ports, ports, k).
         drive: W, motions without forces of the ports; (n, ports, k).
         scaling: lambda; (n, ports).
-        present: forces of rolling tyres; None for standing tyres.
+        present: forces of rolling tyres, if the tyres roll.
         tolerance: largest |y - x| of a finished point over the largest force of its ports.
         limit: largest number of iterations with one scaling.
         ladder: factors of the scalings, see `LADDER`.
@@ -138,13 +138,13 @@ def periodic_forces(
         ended=np.zeros(count, dtype=bool),
         iterations=np.zeros(count, dtype=np.intp),
     )
-    least = np.array([1.5 * port.fall for port in ports])
+    lowest = np.array([1.5 * port.fall for port in ports])
     for of_velocity, of_displacement in ladder:
         left = np.flatnonzero(~result.ended)
         if not left.size:
             break
         factors = np.array([of_velocity if port.of_velocity else of_displacement for port in ports])
-        scaled = np.maximum(scaling[left] * factors, least)
+        scaled = np.maximum(scaling[left] * factors, lowest)
         part = None if present is None else present.at(~result.ended)
         # A point that diverges is found at the next check, and leaves.
         with np.errstate(over="ignore", invalid="ignore"):

@@ -28,7 +28,7 @@ MOTIONS = ("heave", "pitch", "roll", "warp")
 """Names of motions of all plates."""
 
 LOWEST_ROLLING = 1.0
-"""Minimum frequency for rolling tyres [Hz]: at lower frequencies a rolling car may amplify its own motion."""
+"""Minimum frequency for rolling tyres [Hz]: at lower frequencies a rolling car may amplify its motion."""
 
 LEAST_SAMPLES, MOST_SAMPLES = 32, 8192
 """Samples of a period."""
@@ -71,17 +71,17 @@ class LevelMap(LevelStates):
 
     @property
     def units(self) -> dict[str, str]:
-        """Unit of each channel."""
+        """Return the unit of each channel."""
         return channel_units(self.channels)
 
     @property
     def outside(self) -> Mask:
-        """True where a part rotates too far for the linear geometry, or a linear tyre pulls; (f, l)."""
+        """Return True where a part rotates too far for the linear geometry, or a linear tyre pulls; (f, l)."""
         return np.asarray((self.angle > LARGEST_ANGLE) | (self.load < 0.0))
 
     @property
     def unsticking(self) -> Vector:
-        """Level at which each damper begins to slip [m]; NaN outside the levels; (d, f).
+        """Return the level at which each damper begins to slip [m]; NaN outside the levels; (d, f).
 
         The first damper of a frequency has it in closed form. While others slip already, it is where the force of the
         stuck damper, continued from the last two levels, reaches its friction limit.
@@ -118,7 +118,7 @@ class LevelMap(LevelStates):
     def mode(self, near: float, channel: str | None = None) -> tuple[Vector, Vector]:
         """Return frequency [Hz] and damping ratio [-] of a mode at each level; (l,) each.
 
-        The dampers are replaced by viscous ones with their energy at this frequency and level, `equivalent`. At the
+        Viscous dampers with the constants `equivalent` at this frequency and level replace the dampers. At the
         lowest level it is the mode with the largest part of the response of the channel; from there it is followed, to
         NaN where it no longer oscillates.
 
@@ -145,14 +145,14 @@ class LevelMap(LevelStates):
         return result[0], result[1]
 
     def _damping(self, column: int, frequency: float) -> Vector:
-        """Return the equivalent damping constants at a level and a frequency between the computed ones; (d,)."""
+        """Return the equivalent damping constants at a level, interpolated over the frequency; (d,)."""
         position = np.log(self.frequency)
         values = [np.interp(np.log(frequency), position, np.log(each[:, column])) for each in self.equivalent]
         return np.exp(values)
 
     @property
     def notices(self) -> list[str]:
-        """Limits of the results, for the reader."""
+        """Return messages about the limits of the results."""
         left, texts = int(np.sum(~self.ended)), []
         if left:
             texts.append(f"{left} of {self.ended.size} points have no result: the iteration did not end there")
@@ -202,8 +202,8 @@ def crossing(level: Vector, effort: Vector) -> float:
 def _vertex(frequency: Vector, values: Vector) -> tuple[float, float]:
     """Return the vertex of the parabola through three points of ln y over ln x."""
     a, b, c = np.polyfit(np.log(frequency / frequency[1]), np.log(values), 2)
-    place = -0.5 * b / a
-    return float(frequency[1] * np.exp(place)), float(np.exp(c + 0.5 * b * place))
+    vertex = -0.5 * b / a
+    return float(frequency[1] * np.exp(vertex)), float(np.exp(c + 0.5 * b * vertex))
 
 
 def car_levels(

@@ -30,7 +30,7 @@ SEVERAL = 2
 
 @dataclass(frozen=True, slots=False)
 class LevelReport:
-    """What is read from a map: of its first channel the peak and the mode, of the dampers where they slip.
+    """Summary of a map: peak and mode of its first channel, and the slip levels of its dampers.
 
     Attributes:
         states: the map.
@@ -44,7 +44,7 @@ class LevelReport:
 
     @cached_property
     def near(self) -> float:
-        """Frequency of the peak at the lowest level that falls most up to the highest, in the band [Hz]."""
+        """Return the frequency of the peak at the lowest level that falls most up to the highest, in the band [Hz]."""
         low, high = self.band or (0.0, np.inf)
         frequency, size = self.states.frequency, np.nan_to_num(np.abs(self.states.frf[0]), nan=1e-30)
         inside = (frequency >= low) & (frequency <= high)
@@ -56,12 +56,12 @@ class LevelReport:
 
     @property
     def around(self) -> tuple[float, float]:
-        """Band of the peak [Hz]."""
+        """Return the band of the peak [Hz]."""
         return self.band or (self.near / AROUND, self.near * AROUND)
 
     @cached_property
     def peaks(self) -> tuple[Vector, Vector]:
-        """Frequency [Hz] and height of the highest FRF value in the band at each level; NaN at an end of the band."""
+        """Return frequency [Hz] and height of the highest FRF value in the band; NaN at its ends; (l,) each."""
         inside = (self.states.frequency >= self.around[0]) & (self.states.frequency <= self.around[1])
         if np.sum(inside) < 3:
             nothing = np.full(len(self.states.level), np.nan)
@@ -70,7 +70,7 @@ class LevelReport:
 
     @cached_property
     def mode(self) -> tuple[Vector, Vector]:
-        """Frequency [Hz] and damping ratio of the mode at each level; NaN where there is none."""
+        """Return frequency [Hz] and damping ratio of the mode at each level, NaN for a car without this mode."""
         dampers = self.states.car.vehicle.composition.dampers
         if any(damper.law.friction_law == "presliding" for damper in dampers) or self.unit != "m/s2":
             nothing = np.full(len(self.states.level), np.nan)
@@ -79,23 +79,23 @@ class LevelReport:
 
     @property
     def unit(self) -> str:
-        """Unit of the first channel."""
+        """Return the unit of the first channel."""
         return self.states.units[self.states.channels[0]]
 
     def words(self, damper: str) -> str:
-        """Return a damper by its place: "rear left damper"."""
-        place = side_of(damper.removeprefix("damper_"), self.states.car.vehicle.wheels)
-        return f"{place} damper" if place != damper else damper
+        """Return a damper by its position: "rear left damper"."""
+        position = side_of(damper.removeprefix("damper_"), self.states.car.vehicle.wheels)
+        return f"{position} damper" if position != damper else damper
 
     @cached_property
     def lines(self) -> dict[str, Vector]:
-        """Level at which each damper, or the first of an axle, begins to slip [mm]; (f,) each."""
+        """Return the level at which each damper, or the first of an axle, begins to slip [mm]; (f,) each."""
         slips = 1e3 * self.states.unsticking
-        known = {name: line for name, line in zip(self.states.dampers, slips, strict=True) if np.isfinite(line).any()}
+        sliding = {name: line for name, line in zip(self.states.dampers, slips, strict=True) if np.isfinite(line).any()}
         if len(slips) <= SEVERAL:
-            return {f"{self.words(name)} begins to slip": line for name, line in known.items()}
+            return {f"{self.words(name)} begins to slip": line for name, line in sliding.items()}
         axles: dict[str, list[Vector]] = {}
-        for name, line in known.items():
+        for name, line in sliding.items():
             axles.setdefault(self.words(name).split()[0], []).append(line)
         return {f"{axle}: the first damper begins to slip": np.fmin.reduce(lines) for axle, lines in axles.items()}
 
@@ -128,7 +128,7 @@ class LevelReport:
 
     @property
     def rows(self) -> list[int]:
-        """Indices of the levels whose FRFs are drawn: the last level at which all dampers stick, and those above."""
+        """Return the indices of the drawn levels: the last at which all dampers stick, and higher levels."""
         lowest = np.nanmin(self.states.unsticking, initial=np.inf)
         count, first = len(self.states.level), max(0, int(np.searchsorted(self.states.level, lowest)) - 1)
         first = first if first < count - 1 else 0
@@ -142,7 +142,7 @@ class LevelReport:
 
     @property
     def motion(self) -> str:
-        """Motion of the plates in words."""
+        """Return the motion of the plates in words."""
         wheels = self.states.car.vehicle.wheels
         if self.plates in MOTIONS:
             return f"plates in {self.plates}"
