@@ -1,6 +1,7 @@
 """The splitting on systems that are known in closed form: Den Hartog's oscillator, linear limits, energy."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from vehicle.engines.steady.level_states import level_states
 from vehicle.engines.steady.plant import Plant
 from vehicle.engines.steady.splitting import periodic_forces
 
-NO_LOADS = SimpleNamespace(names=())
+NO_LOADS: Any = SimpleNamespace(names=())
 STIFFNESS, MASS = 2e4, 50.0
 
 

@@ -1,6 +1,7 @@
 """Ports: every force and motion of a resolvent belong to the law of the car, and to p + lambda w = u."""
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from vehicle.model.parameters.vehicle import load_vehicle
 SUMS = np.random.default_rng(1).uniform(-900.0, 900.0, (3, 128)) * np.array([[0.02], [0.3], [1.0]])
 SCALING = np.array([[800.0], [2500.0], [9000.0]])
 
-DAMPERS = {
+DAMPERS: dict[str, dict[str, Any]] = {
     "Coulomb": {"coulomb_friction": 60.0},
     "no friction": {"coulomb_friction": 0.0, "viscous_law": "degressive"},
     "degressive": {"coulomb_friction": 60.0, "viscous_law": "degressive"},

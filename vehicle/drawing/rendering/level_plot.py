@@ -184,8 +184,7 @@ def _map(axes: Axes, data: LevelPicture, values: Vector, colours: str) -> Any:
     from matplotlib import colormaps
     from matplotlib.colors import LogNorm
 
-    table = colormaps[colours].copy()
-    table.set_bad("#b0b0b0")
+    table = colormaps[colours].with_extremes(bad="#b0b0b0")
     low, high = np.nanmin(values), np.nanmax(values)
     norm = LogNorm(low, max(high, 1.001 * low))
     # Interpolate the colours, unless a point has no result.
@@ -226,7 +225,7 @@ def _legend(axes: Axes) -> None:
 def _edges(centres: Vector) -> Vector:
     """Return the edges of cells around places on a logarithmic scale; (n + 1,)."""
     if len(centres) == 1:
-        return centres[0] * np.array([0.97, 1.03])
+        return np.asarray(centres[0] * np.array([0.97, 1.03]))
     middle = np.sqrt(centres[1:] * centres[:-1])
     return np.concatenate([[centres[0] ** 2 / middle[0]], middle, [centres[-1] ** 2 / middle[-1]]])
 

@@ -41,7 +41,7 @@ def one_state(ports: Sequence[Port], effects: Complex, speeds: Vector, cycle: Cy
     mobility = np.moveaxis(effects[..., moving] * np.where(of_velocity[:, None, None], 1.0, s), -1, 1)
     falls = np.array([port.fall for port in ports])
     if falls.any():
-        mobility = np.linalg.inv(mobility)
+        mobility = np.asarray(np.linalg.inv(mobility), dtype=np.complex128)
     # Scaled by the response of each port, because the ports have different units.
     size = np.sqrt(np.abs(np.einsum("fkii->fki", mobility)))
     hermitian = 0.5 * (mobility + np.conj(np.swapaxes(mobility, -1, -2))) - np.diag(falls)

@@ -115,7 +115,7 @@ class Polygon(Port):
             np.minimum(part, high, out=part)
             part *= slopes[:, segment : segment + 1] if x.ndim > 1 else slopes[0, segment]
             result += part
-        return result
+        return np.asarray(result)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

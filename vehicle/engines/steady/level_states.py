@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -130,7 +131,7 @@ class _Study:
         self.fundamental = int(np.flatnonzero(self.cycle.harmonics == 1)[0])
         self.owners = np.concatenate([np.arange(len(dampers)), model.matrices.sliders.dampers])
 
-    def part(self, frequency: Vector, level: Vector) -> dict[str, Complex | Vector | Mask | Indices]:
+    def part(self, frequency: Vector, level: Vector) -> dict[str, Any]:
         """Return the figures at some frequencies and all levels."""
         first_line, count = self.fundamental, len(frequency)
         table = self._by_frequency(self.plant.responses(self._speeds(frequency).ravel()), count)
@@ -192,7 +193,7 @@ class _Study:
             load=self.static,
         )
 
-    def _channels(self, rows: Complex, height: Vector) -> dict[str, Complex | Vector]:
+    def _channels(self, rows: Complex, height: Vector) -> dict[str, Any]:
         """Return the figures of the channels and the smallest tyre load."""
         first_line, k = self.fundamental, self.cycle.harmonics
         tyres = slice(self.plant.base, self.plant.base + len(self.static))
@@ -215,7 +216,7 @@ class _Study:
 
     def _dampers(
         self, rows: Complex, periodic: PeriodicForces, amplitudes: Complex, frequency: Vector
-    ) -> dict[str, Complex | Vector]:
+    ) -> dict[str, Any]:
         """Return the figures of the dampers."""
         count, points = len(self.dampers), len(rows)
         velocity = rows[:, :count]
@@ -276,5 +277,5 @@ def slope_at_rest(port: Port) -> float:
     if isinstance(port, Stribeck):
         return slope_at_rest(port.static)
     assert isinstance(port, Polygon)
-    beside = {int(np.searchsorted(port.knots, 0.0, side)) for side in ("left", "right")}  # type: ignore[call-overload]
+    beside = {int(np.searchsorted(port.knots, 0.0, side)) for side in ("left", "right")}
     return float(max(port.slopes[index] for index in beside))

@@ -169,7 +169,8 @@ class _Iteration:
         self.ports, self.cycle, self.result, self.points = ports, cycle, result, points
         scaled = np.moveaxis(scaling[:, :, None, None] * effects, -1, 1)
         inverse = np.linalg.inv(np.eye(len(ports)) + scaled)
-        self.inverse, self.drive, self.scaling = np.moveaxis(inverse, 1, -1), drive, scaling[:, :, None]
+        self.inverse = np.asarray(np.moveaxis(inverse, 1, -1), dtype=np.complex128)
+        self.drive, self.scaling = drive, scaling[:, :, None]
         self.present, self.slope = present, result.slope[points]
         self.state = result.force[points] - self.scaling * result.motion[points]
         size = len(ports) * cycle.stored
@@ -184,7 +185,9 @@ class _Iteration:
             drive = self.drive
             if self.present is not None:
                 drive = drive + _product(self.present.ports, self.slope)
-            x = _product(self.inverse, self.cycle.amplitudes(self.state) + self.scaling * drive)
+            x = _product(
+                self.inverse, np.asarray(self.cycle.amplitudes(self.state) + self.scaling * drive, dtype=complex)
+            )
             history = self.cycle.histories(x)
             sums = 2.0 * history - self.state
             force = np.empty_like(sums)
