@@ -30,12 +30,12 @@ def states(model, dampers, frequency, level, channels, **more):
     )  # fmt: skip
 
 
-def oscillator():
+def oscillator(damping=0.0):
     """A mass on a spring over the right plate, rubbing on the ground; the damper is its coordinate."""
     row = np.array([[STIFFNESS], [0.0]])
     return pole_model(
         plain_matrices(
-            mass=np.array([[MASS]]), damping=np.zeros((1, 1)), stiffness=np.array([[STIFFNESS]]),
+            mass=np.array([[MASS]]), damping=np.array([[damping]]), stiffness=np.array([[STIFFNESS]]),
             dampers=np.array([0]), viscous=np.zeros(1), plate_stiffness=row, plate_damping=0.0 * row,
             tyre_stiffness=np.full(2, STIFFNESS), tyre_damping=np.zeros(2), outputs={"knuckle_fr_acc_z": np.ones(1)},
             body_rows={"body": np.zeros((6, 1))}, body_masses={"body": np.eye(6)},
@@ -120,3 +120,14 @@ def test_more_samples_change_little():
         for samples in (128, 1024)
     )
     assert np.max(np.abs(coarse / fine - 1.0)) < 1e-3
+
+
+@pytest.mark.parametrize("share", [0.97, 1.03])
+def test_only_one_state_is_proven_of_friction_that_falls_less_than_the_damping(share):
+    """Of an oscillator Re(1/G) is its damping constant; the friction falls by at most (Fs - Fd)/vs."""
+    law = damper(
+        viscous=0.0, friction_law="stribeck", coulomb_friction=5.0, stribeck_friction=9.0, smoothing=1e7,
+        stribeck_velocity=4.0 / (share * 300.0), stribeck_exponent=1.0,
+    )  # fmt: skip
+    found = states(oscillator(damping=300.0), [law], [2.0, 5.0], 1e-3, ["knuckle_fr_acc_z"])
+    assert found.unique.tolist() == 2 * [share < 1.0]

@@ -62,6 +62,14 @@ def test_friction_costs_the_peak_its_height_and_leaves_damping(states):
     assert frequency[0] == pytest.approx(stuck.frequency, rel=1e-3)
     assert ratio[0] == pytest.approx(stuck.damping_ratio, rel=0.05)  # the friction line is not rigid
     assert ratio[LEVEL > 1e-4].min() > 0.1 and np.nanmax(ratio) > 0.6
+    # The modes of a car with such dampers, left and right alike; c of the front and of the rear.
+    constants = [np.interp(3.67, FREQUENCY, each) for each in states.equivalent[:, :, -1]]
+    changes = {"front.damper.viscous": np.mean(constants[:2]), "rear.damper.viscous": np.mean(constants[2:])}
+    modes = states.car.with_({**changes, "*.damper.coulomb_friction": 0.0}).modes("sliding")
+    viscous = min(
+        modes, key=lambda mode: abs(mode.frequency / frequency[-1] - 1.0) + abs(mode.damping_ratio - ratio[-1])
+    )
+    assert ratio[-1] == pytest.approx(viscous.damping_ratio, rel=2e-3)
 
 
 def test_a_cut_is_computed_at_its_own_frequency(states):
