@@ -7,12 +7,13 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from scenarios.evidence import SLIP_STEP
-from scenarios.signals.exact_road import RATE_HZ, road
+from scenarios.signals.exact_road import road
 from vehicle.arrays import Vector
 from vehicle.names import across
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.comfort import comfort_values
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.slip import slip_shares
@@ -99,15 +100,16 @@ class RoadMeasure:
     def of(self, runs: Runs) -> dict[str, Vector]:
         """Return the values of r runs; (r,) each."""
         # The last sample of the record is the first sample of the next period.
-        record = slice(round(self.lead * RATE_HZ) + 1, None)
+        record = evaluated_span(runs.time.size, runs.timestep, self.lead)
         rail = runs.stacked(*SEAT_RAIL)
         comfort = comfort_values(runs.timestep, rail[:, :, record])
+        weighted = [weighted_rms_of(runs.timestep, xyz[:, : record.stop], skip=self.lead)[3] for xyz in rail]
         right, left = (runs[name][:, record] for name in self._dampers)
         load = runs[f"tyre_{self.wheel}_force_z"][:, record]
         limit, limit_left = runs.slip_velocities((self.wheel, across(self.wheel))).T
         return {
             UNWEIGHTED: comfort.overall,
-            WEIGHTED: np.array([weighted_rms_of(runs.timestep, xyz, skip=self.lead)[3] for xyz in rail]),
+            WEIGHTED: np.array(weighted),
             "gaussian_error": comfort.error * comfort.overall,
             "slip": slip_shares(right, limit),
             "slip_left": slip_shares(left, limit_left),

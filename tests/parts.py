@@ -28,6 +28,7 @@ REST = {
 """Beginning of a test under tests/ to what it does that the product does not need at every change."""
 
 KEPT = (
+    "benchmarks/test_counts.py",
     "scenarios/test_claim.py",
     "scenarios/test_interval_probability.py",
     "scenarios/test_damper_optimum.py",

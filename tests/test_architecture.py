@@ -14,7 +14,7 @@ from vehicle.commands import OLDER
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "vehicle"
 
-EVERYWHERE = {"arrays", "digits", "errors", "leftovers", "names", "settings", "stored", "wording"}
+EVERYWHERE = {"arrays", "digits", "errors", "leftovers", "mapped_table", "names", "settings", "stored", "wording"}
 """May be used by every room."""
 
 WINGS = {
@@ -44,6 +44,7 @@ ROOMS: dict[str, set[str]] = {
     "leftovers": set(),
     "names": set(),
     "machine": set(),
+    "mapped_table": set(),
     "replacement": set(),
     "settings": set(),
     "stored": set(),

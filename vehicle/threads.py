@@ -94,9 +94,9 @@ def _restore(numbers: Mapping[Any, int]) -> None:
 
 
 def prefer_one_thread() -> None:
-    """Set one thread for libraries that this process loads later, unless the user has set a number."""
+    """Set one thread for libraries that this process loads later, unless the user has set another number."""
     global _loaded_single
-    if not any(name in os.environ for name in THREADS):
+    if all(os.environ.get(name, "1") == "1" for name in THREADS):
         os.environ.update(dict.fromkeys(THREADS, "1"))
         # A library that is loaded already keeps its number.
         _loaded_single = "numpy" not in sys.modules
@@ -112,3 +112,8 @@ def one_thread_each() -> Iterator[None]:
     finally:
         for name, value in before.items():
             os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+def processors() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,6 +1,9 @@
 """Speed and accuracy of the time simulation: `python -m tests.benchmarks.speed [--json] [--compare FILE]`.
 
-Counts first (rows, degrees of freedom), then time: medians of interleaved runs on one core, and the price in accuracy.
+Times are those of what users call (`car.run`, the command, a case of a sweep): minima of the processor time of
+interleaved repetitions on one core, and their ratios to a fixed loop in numpy, `kernel`, measured beside them, which
+compare two states of the program on a machine whose speed drifts. Then the price in accuracy. Counts, which need no
+clock, are in `tests.benchmarks.counts`.
 """
 
 import argparse
@@ -10,10 +13,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from statistics import median
 
 import mujoco
 import numpy as np
@@ -35,7 +37,18 @@ SHOWN = {
     "rows": "constraint rows",
     "dof": "degrees of freedom",
     "timestep": "default step [s]",
-    "step_us": "step with the callbacks that a run uses, in motion [us]",
+    "kernel_ms": "fixed loop in numpy, the unit of the ratios [ms]",
+    "run_ms": "`car.run` with MuJoCo, 4 s [ms]",
+    "four_wheel_run_ms": "the same of focus_road on four plates [ms]",
+    "reduced_run_ms": "`car.run` with the reduced engine, 60 s, all channels, stated errors [ms]",
+    "reduced_bare_ms": "the same without stated errors [ms]",
+    "stated_errors_share": "share of the stated errors in that run [-]",
+    "reduced_few_ms": "with the channels of seat rail and dampers only [ms]",
+    "four_wheel_reduced_ms": "focus_road on four plates [ms]",
+    "four_wheel_bare_ms": "the same without stated errors [ms]",
+    "four_wheel_stated_errors_share": "share of the stated errors in that run [-]",
+    "batch_ms": "16 cars at once, seat rail and damper velocities [ms]",
+    "step_us": "step of `car.run`, everything included [us]",
     "plain_step_us": "step of the same model without callbacks, in motion [us]",
     "realtime_factor": "simulated over computing time, recording included",
     "rms_error": "largest RMS error of an acceleration channel against an eighth of the step, low and high level",
@@ -46,8 +59,8 @@ SHOWN = {
     "batch_realtime_factor": "simulated over computing time of many cars at once, seat rail and damper velocities",
     "four_wheel_rows": "constraint rows of focus_road, on four plates",
     "four_wheel_dof": "degrees of freedom of focus_road",
-    "four_wheel_step_us": "its step with the callbacks that a run uses, all plates in motion [us]",
-    "four_wheel_step_ratio": "that over step_us, interleaved",
+    "four_wheel_step_us": "step of its `car.run`, all plates in motion [us]",
+    "four_wheel_step_ratio": "that over step_us",
     "four_wheel_reduced_realtime_factor": "simulated over computing time of its reduced engine, all channels",
     "case_ms": "processor time of a sweep case of 30 s, ten parameters varied, everything included [ms]",
     "import_ms": "processor time of `import vehicle` in a new process, files cached [ms]",
@@ -131,6 +144,8 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
     """
     model = car.model.spec.compile()
     model.qpos_spring[:] = car.model.model.qpos_spring
+    # As in a run, whose steps never enter Python: `vehicle.engines.simulation.run_model`.
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
     prepare_model(model)
     data = mujoco.MjData(model)
     rows = Rows(model, car.model.static.preload)
@@ -165,15 +180,13 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
     return spent
 
 
-def batch_factor(car: Car, signal: Signal) -> float:
-    """Simulated time of all cars of a batch over its computing time, tables and all, channels of comfort and slip."""
-    started = time.perf_counter()
+def run_batch(car: Car, signal: Signal) -> None:
+    """Run a batch of equal cars, tables and all, with the channels of comfort and slip."""
     simulate_batch(
         [car.poles] * BATCH, signal, dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * BATCH,
         record_rate=car.vehicle.solver.record_rate, tyre_load=[car.model.static.tyre_load] * BATCH,
         channels=[name for name in FEW if not name.endswith("_force")],
     )  # fmt: skip
-    return BATCH * signal.duration / (time.perf_counter() - started)
 
 
 def start_ms(statement: str, repeats: int) -> float:
@@ -211,67 +224,86 @@ def accuracy(car: Car, seconds: float) -> Figures:
     }
 
 
+def kernel() -> None:
+    """Fixed work in numpy, the unit of the ratios: products of matrices of 160 rows, Fourier transforms, a loop."""
+    rows = np.linspace(-1.0, 1.0, 160 * 160).reshape(160, 160)
+    signal = np.linspace(-1.0, 1.0, 2**16)
+    total = 0.0
+    for _ in range(30):
+        rows = np.tanh(rows @ rows.T / 160.0)
+        total += float(np.abs(np.fft.rfft(signal)[1]))
+    for index in range(100_000):
+        total += index & 3
+    assert np.isfinite(total)
+
+
+def processor_ms(piece_of_work: Callable[[], object]) -> float:
+    """Return the processor time of a function [ms]."""
+    started = time.process_time()
+    piece_of_work()
+    return 1e3 * (time.process_time() - started)
+
+
 def measure(effort: Effort) -> Figures:
-    """All figures of the benchmark; times are medians of interleaved repetitions."""
-    car = Car.load()
-    signal = piece(effort.seconds)
-    model = car.model.model
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    steps = min(effort.steps, int(signal.duration / model.opt.timestep))
-    native, plain, factors = [], [], []
-    reduced: list[float] = []
-    few: list[float] = []
-    four_wheel: list[float] = []
-    four_wheel_reduced: list[float] = []
-    batch: list[float] = []
-    road_car = Car.load("focus_road")
-    on_four, long_on_four = on_four_plates(signal), on_four_plates(piece(effort.accuracy_seconds))
-    road_car.run(long_on_four, engine="reduced")
-    car.run(signal)
+    """Return all figures of the benchmark; times are minima of the processor time of interleaved repetitions."""
+    car, road_car, signal = Car.load(), Car.load("focus_road"), piece(effort.seconds)
     # Long enough that what a run does once is as small a part as in a study.
     long = piece(effort.accuracy_seconds)
-    car.run(long, engine="reduced")
-    batch_factor(car, signal)
+    on_four, long_on_four = on_four_plates(signal), on_four_plates(long)
+    works: dict[str, Callable[[], object]] = {
+        "kernel_ms": kernel,
+        "run_ms": lambda: car.run(signal),
+        "four_wheel_run_ms": lambda: road_car.run(on_four),
+        "reduced_run_ms": lambda: car.run(long, engine="reduced"),
+        "reduced_bare_ms": lambda: car.run(long, engine="reduced", stated_errors=False),
+        "reduced_few_ms": lambda: car.run(long, engine="reduced", channels=FEW),
+        "four_wheel_reduced_ms": lambda: road_car.run(long_on_four, engine="reduced"),
+        "four_wheel_bare_ms": lambda: road_car.run(long_on_four, engine="reduced", stated_errors=False),
+        "batch_ms": lambda: run_batch(car, long),
+    }
+    for work in works.values():
+        work()
+    times = {name: list[float]() for name in works}
     for _ in range(effort.repeats):
-        native.append(stepping_time(car, signal, steps, "native"))
-        four_wheel.append(stepping_time(road_car, on_four, steps, "native"))
-        plain.append(stepping_time(car, signal, steps, "plain"))
-        factors.append(car.run(signal).recording.statistics.realtime_factor)
-        for found_factors, channels in ((reduced, None), (few, FEW)):
-            run = car.run(long, engine="reduced", channels=channels)
-            found_factors.append(run.recording.statistics.realtime_factor)
-        batch.append(batch_factor(car, long))
-        run = road_car.run(long_on_four, engine="reduced")
-        four_wheel_reduced.append(run.recording.statistics.realtime_factor)
-    road_model = road_car.model.model
-    road_data = mujoco.MjData(road_model)
-    mujoco.mj_forward(road_model, road_data)
-    parts: dict[str, dict[str, float]] = {"native": {}, "plain": {}}
-    for form, found in parts.items():
-        stepping_time(car, signal, steps, form, found)
-    return accuracy(car, effort.accuracy_seconds) | {
-        "rows": int(data.nefc),
-        "dof": int(model.nv),
-        "timestep": float(model.opt.timestep),
-        "step_us": median(native),
-        "plain_step_us": median(plain),
-        "realtime_factor": median(factors),
-        "reduced_realtime_factor": median(reduced),
-        "reduced_few_realtime_factor": median(few),
-        "batch_realtime_factor": median(batch),
-        "four_wheel_rows": int(road_data.nefc),
-        "four_wheel_dof": int(road_model.nv),
-        "four_wheel_step_us": median(four_wheel),
-        "four_wheel_step_ratio": median(four / two for four, two in zip(four_wheel, native, strict=True)),
-        "four_wheel_reduced_realtime_factor": median(four_wheel_reduced),
+        for name, work in works.items():
+            times[name].append(processor_ms(work))
+    least = {name: min(values) for name, values in times.items()}
+    steps, four_wheel_steps = (
+        one.run(drive).recording.statistics.steps for one, drive in ((car, signal), (road_car, on_four))
+    )
+    least |= {
+        "case_ms": min(case_ms(effort.cases) for _ in range(2)),
         "import_ms": start_ms("import vehicle", effort.starts),
         "shaker_ms": shaker_ms(effort.starts),
         "first_car_ms": start_ms("from vehicle import Car; Car.load('focus')", effort.starts),
-        "case_ms": min(case_ms(effort.cases) for _ in range(2)),
+    }
+    parts: dict[str, dict[str, float]] = {"native": {}, "plain": {}}
+    few = min(effort.steps, steps)
+    for form, found in parts.items():
+        stepping_time(car, signal, few, form, found)
+    counted = dict[str, int]()
+    for head, one in (("", car), ("four_wheel_", road_car)):
+        data = mujoco.MjData(one.model.model)
+        mujoco.mj_forward(one.model.model, data)
+        counted |= {f"{head}rows": int(data.nefc), f"{head}dof": int(one.model.model.nv)}
+    step, four_wheel_step = 1e3 * least["run_ms"] / steps, 1e3 * least["four_wheel_run_ms"] / four_wheel_steps
+    return accuracy(car, effort.accuracy_seconds) | counted | least | {
+        "timestep": float(car.model.model.opt.timestep),
+        "step_us": step,
+        "plain_step_us": min(stepping_time(car, signal, few, "plain") for _ in range(effort.repeats)),
+        "four_wheel_step_us": four_wheel_step,
+        "four_wheel_step_ratio": four_wheel_step / step,
+        "realtime_factor": 1e3 * signal.duration / least["run_ms"],
+        "reduced_realtime_factor": 1e3 * long.duration / least["reduced_run_ms"],
+        "reduced_few_realtime_factor": 1e3 * long.duration / least["reduced_few_ms"],
+        "four_wheel_reduced_realtime_factor": 1e3 * long.duration / least["four_wheel_reduced_ms"],
+        "batch_realtime_factor": 1e3 * BATCH * long.duration / least["batch_ms"],
+        "stated_errors_share": 1.0 - least["reduced_bare_ms"] / least["reduced_run_ms"],
+        "four_wheel_stated_errors_share": 1.0 - least["four_wheel_bare_ms"] / least["four_wheel_reduced_ms"],
+        "ratios": {name: value / least["kernel_ms"] for name, value in least.items()},
         "parts_us": parts["native"],
         "plain_parts_us": parts["plain"],
-    }
+    }  # fmt: skip
 
 
 def _rms(values: npt.NDArray[np.float64]) -> float:
@@ -280,11 +312,16 @@ def _rms(values: npt.NDArray[np.float64]) -> float:
 
 def report(found: Figures, before: Figures | None) -> str:
     """Table of the figures, with those of an earlier run beside them."""
-    lines = []
+    lines, ratios = [], found["ratios"]
+    assert isinstance(ratios, dict)
     for key, meaning in SHOWN.items():
         value, earlier = found[key], None if before is None else before.get(key)
         earlier = found.get("case_before_ms") if key == "case_ms" else earlier
-        text = f"{key:<23} {value:>10.4g}" if isinstance(value, float | int) else f"{key:<23} {value}"
+        text = f"{key:<30} {value:>10.4g}" if isinstance(value, float | int) else f"{key:<30} {value}"
+        if key in ratios:
+            text += f" = {ratios[key]:>8.4g} kernels"
+            if before is not None and (ratio := before.get("ratios", {}).get(key)):  # type: ignore[union-attr]
+                text += f" (before {ratio:.4g})"
         if isinstance(value, float | int) and isinstance(earlier, float | int):
             change = f"{100.0 * (value / earlier - 1.0):+.1f} %" if earlier else ""
             text += f"   before {earlier:>10.4g} {change:>9}"

@@ -109,7 +109,7 @@ def test_refusals(arguments, code, message, tmp_path, monkeypatch, capsys):
 def test_the_index_of_a_short_drive_names_its_length(tmp_path, capsys):
     arguments = ["--class", "B", "--speed", "36", "--duration", "5", "--output", str(tmp_path / "a.csv")]
     assert main([*arguments, "--no-figures", "--iri"]) == 0
-    assert " m/km over the 50 m of the drive" in capsys.readouterr().out
+    assert " m/km over the 30 m of the road" in capsys.readouterr().out
 
 
 def test_roughness_index_of_a_profile(tmp_path, capsys):

@@ -10,6 +10,7 @@ VALUES = {
     "duration": 12.5,
     "rate": 2000.0,
     "seed": 3,
+    "period": "record",
     "coherence": 0.5,
     "patch": 0.2,
     "contact": "cams",

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle import Car
+from vehicle import Car, road
 from vehicle.__main__ import main
 from vehicle.digits import number
 from vehicle.engines.linear.first_order import first_order
@@ -212,6 +212,11 @@ def test_a_sweep_measures_an_order(tmp_path, capsys):
     cars = [Car.load("sedan", {**IMBALANCE, "front.right.imbalance.mass": mass}) for mass in (0.004, 0.04)]
     points = [order_points(car, speed=[100.0], orders=[1], duration=5.0).amplitude[0, 0] for car in cars]
     assert sorted(found) == pytest.approx(sorted(map(abs, points)), rel=1e-5)
+    small, large = (f"order:1:seat_rail_acc_{axes}" for axes in ("z", "y+seat_rail_acc_x+seat_rail_acc_z"))
+    car = Car.load("sedan", {**IMBALANCE, "front.right.imbalance.mass": 0.04})
+    run = car.run(road("level", 100, duration=5), engine="reduced")
+    each = [run.figure(f"order:1:seat_rail_acc_{axis}") for axis in "xyz"]
+    assert run.figure(small) == each[2] and run.figure(large) == max(each) > each[1]
     for wrong in ("order:0:seat_rail_acc_z", "order:1"):
         assert main([*command[:-4], "--measure", wrong, "--output", str(tmp_path / "b")]) == 2
         assert f"--measure '{wrong}': must have the form order:N:CHANNELS[:ANGLE]" in capsys.readouterr().err

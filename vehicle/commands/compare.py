@@ -29,7 +29,7 @@ from vehicle.commands.several_files import each_file, expanded, raise_worst, tab
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination
-from vehicle.settings import Settings, engine_setting, part, setting
+from vehicle.settings import Settings, engine_setting, part, setting, stated_errors_setting
 from vehicle.signals.records.measured_settings import MeasuredSettings
 from vehicle.signals.records.record_settings import RecordSettings
 
@@ -85,6 +85,7 @@ class CompareSettings(Settings):
         "edges of the frequency bands of the table [Hz]; default: %(default)s", "1,2,4,8,16,32,50", metavar="HZ,HZ,..."
     )
     engine: str = engine_setting("auto")
+    stated_errors: bool = stated_errors_setting()
 
 
 def parser() -> Parser:
@@ -111,6 +112,7 @@ def parser() -> Parser:
         parser.scoped_group(RUN, needs="an input that is simulated first, for example low.csv", active=None),
         CompareSettings,
         "engine",
+        "stated_errors",
     )
     output_options(parser, OUTPUT)
     figures_option(parser)
@@ -238,6 +240,7 @@ def _run(
         engine=settings.engine,
         progress=console.progress("simulation"),
         channels=(*car.vehicle.channels, *sorted(loads)) if loads else None,
+        stated_errors=settings.stated_errors,
     )
     return run, channels
 

@@ -56,7 +56,7 @@ def parser() -> Parser:
         "--tolerance",
         "--tolerance: no such option; set the error at which the iteration ends with --target-error PERCENT",
     )
-    setting_options(iteration, DriveSettings, "engine")
+    setting_options(iteration, DriveSettings, "engine", "stated_errors")
     output_options(parser, None, default="runs/drive_<name of the target>")
     figures_option(parser)
     message_options(parser, quiet=True)

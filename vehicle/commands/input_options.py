@@ -108,6 +108,7 @@ def road_options(
     random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
     each = "; repeat it to see the scatter: each road runs with each seed" if several else ""
     setting_options(random, RoadSettings, "seed", note=each, action="append" if several else "store")
+    setting_options(random, RoadSettings, "period")
     setting_options(random, RoadSettings, "coherence")
     setting_options(group, RoadSettings, "patch")
     setting_options(group, RoadSettings, "contact")

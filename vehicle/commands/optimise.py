@@ -75,7 +75,7 @@ def parser() -> Parser:
         "cars as they are made", needs="--tolerance PATH=SIZE", active=lambda options: bool(options.tolerances)
     )
     setting_options(tolerances, SearchSettings, "samples", "quantile")
-    setting_options(parser, SearchSettings, "engine", "skip", "jobs", "executor", "check")
+    setting_options(parser, SearchSettings, "screen", "engine", "skip", "jobs", "executor", "check")
     parser.add_argument(
         "--beside",
         type=Path,
@@ -116,7 +116,7 @@ def settings_of(options: argparse.Namespace) -> SearchStudy | TargetStudy:
     chosen = {"car": car_of(options), "destination": destination_of(options)}
     if options.targets is None:
         return read(options, SearchStudy, inputs=inputs_of(options), **chosen)
-    for name in ("minimise", "maximise", "limits", "tolerances", "check", "beside", "resume"):
+    for name in ("minimise", "maximise", "limits", "tolerances", "screen", "check", "beside", "resume"):
         if getattr(options, name):
             option = f"--{name.removesuffix('s')}"
             raise ConfigurationError(f"--targets already sets the limits; remove {option}")

@@ -154,7 +154,7 @@ def _job(settings: RoadCommand, console: Console) -> None:
         print(f"{path}: {signal.source}; {signal.duration:g} s; RMS [mm] {sizes}")
         for side, (index, level) in roughness.items():
             low, high = number(index.segments.min()), number(index.segments.max())
-            short = f" over the {index.edges[-1] - index.edges[0]:.0f} m of the drive"
+            short = f" over the {index.edges[-1] - index.edges[0]:.0f} m of the road"
             ranged = f", {low} to {high} over 100 m" if index.segments.size > 1 else short
             rated = "" if level is None else f"; class {level.letter} of ISO 8608"
             print(f"IRI of the {side} track: {number(index.overall)} m/km{ranged}{rated}")

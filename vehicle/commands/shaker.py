@@ -66,7 +66,9 @@ def parser() -> Parser:
     output_options(parser, None, default="runs/<input stem> or runs/road_C_80")
     car = vehicle_options(parser)
     setting_options(car, ShakerSettings, "controller", "trust")
-    setting_options(parser, ShakerSettings, "engine", "skip", "timestep", "time_format", "channels", "formats")
+    setting_options(
+        parser, ShakerSettings, "engine", "stated_errors", "skip", "timestep", "time_format", "channels", "formats"
+    )
     figures_option(parser)
     film = film_options(parser, "render a video of the run")
     setting_options(film, ShakerSettings, "video_mode")

@@ -73,7 +73,15 @@ def parser() -> Parser:
         "front.damper; coordinates are shifted by ±D mm (default 10), for example 20%%,5mm",
     )
     vehicle_options(parser)
-    setting_options(parser, SweepSettings, "measure", "engine", "skip", "jobs", "executor", "time_limit")
+    setting_options(parser, SweepSettings, "estimate", "measure", "engine", "skip")
+    setting_options(
+        parser,
+        SweepSettings,
+        "jobs",
+        default=None,
+        help="processes for independent runs; default: chosen by the estimated work (a process takes 2.4 s to start)",
+    )
+    setting_options(parser, SweepSettings, "executor", "time_limit")
     output_options(parser, Path("runs/sweep"))
     resume_options(parser)
     parser.add_argument("--allow-failed", action="store_true", help="exit with 0 instead of 4 if runs failed")
@@ -114,6 +122,7 @@ def settings_of(options: argparse.Namespace) -> SweepStudy:
         inputs=inputs_of(options),
         destination=destination_of(options),
         report=read(options, ReportChoice),
+        runs=read(options, SweepSettings, jobs=options.jobs),
     )
 
 

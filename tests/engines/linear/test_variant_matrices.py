@@ -216,3 +216,47 @@ def test_a_variant_is_freed_without_the_garbage_collector():
         assert freed() is None
     finally:
         gc.enable()
+
+
+def bits(value):
+    """Return the bytes of all arrays of an object, and the texts of its other values."""
+    if isinstance(value, np.ndarray):
+        return value.tobytes() if value.dtype != object else [bits(each) for each in value.tolist()]
+    if isinstance(value, dict):
+        return [(key, bits(each)) for key, each in value.items()]
+    if isinstance(value, (list, tuple)):
+        return [bits(each) for each in value]
+    if is_dataclass(value) and not isinstance(value, type):
+        return [(entry.name, bits(getattr(value, entry.name))) for entry in fields(value)]
+    return repr(value)
+
+
+DAMPER = "front.damper."
+
+PRESLIDING = {"friction_law": "presliding", "presliding_stiffness": 2e6}
+
+
+@pytest.mark.parametrize(
+    ("shared", "one", "other", "equal"),
+    [
+        ({}, {"coulomb_friction": 60.0}, {"coulomb_friction": 90.0}, True),
+        ({"friction_law": "stribeck", "stribeck_friction": 200.0}, {"stribeck_velocity": 0.02},
+         {"stribeck_velocity": 0.05, "stribeck_friction": 260.0, "stribeck_exponent": 2.0}, True),
+        ({"viscous_law": "degressive"}, {"degressive_viscous": 9e3}, {"degressive_viscous": 12e3}, True),
+        ({"side_force_coefficient": 0.05}, {"coulomb_friction": 60.0}, {"coulomb_friction": 90.0}, True),
+        ({}, {"viscous": 1500.0}, {"viscous": 1500.1}, False),
+        ({}, {"gas_force": 100.0}, {"gas_force": 110.0}, False),
+        ({}, {"side_force_coefficient": 0.04}, {"side_force_coefficient": 0.05}, False),
+        (PRESLIDING, {"coulomb_friction": 60.0}, {"coulomb_friction": 90.0}, True),
+        (PRESLIDING, {"presliding_stiffness": 1e6}, {"presliding_stiffness": 1.1e6}, False),
+    ],
+)  # fmt: skip
+def test_cars_of_equal_matrices_share_them(shared, one, other, equal):
+    """The matrices of the second car equal, bit by bit, those from the terms of a base car that has stored none."""
+    base, fresh = (Car.load("focus_road", {f"{DAMPER}{key}": value for key, value in shared.items()}) for _ in "ab")
+    first, second = (base.with_({f"{DAMPER}{key}": value for key, value in each.items()}) for each in (one, other))
+    alone = fresh.with_(dict(zip([f"{DAMPER}{key}" for key in other], other.values(), strict=True)))
+    assert first._from_terms is not None
+    assert (first.matrices is second.matrices) == (first.poles is second.poles) == equal
+    assert bits(second.matrices) == bits(alone.matrices) and bits(second.static) == bits(alone.static)
+    assert second.vehicle.composition.dampers != first.vehicle.composition.dampers

@@ -1,11 +1,14 @@
 """Errors that a run of the reduced engine states of its channels, in words and against MuJoCo."""
 
+import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from tests.validation import validated
+from vehicle.commands.shaker import main as shaker
 from vehicle.engines.reduced import reduced_run, second_order
 from vehicle.engines.reduced.linear_motion import (
     continued,
@@ -19,6 +22,7 @@ from vehicle.engines.reduced.linear_motion import (
 from vehicle.engines.reduced.stated_errors import error_sentence, is_main, messages, misses_main
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
+from vehicle.runs.car.simulated_run import NOT_COMPUTED
 
 
 def test_channels_are_named_by_their_error_with_its_sign() -> None:
@@ -223,3 +227,20 @@ def test_auto_answers_for_the_channels_that_are_asked_for() -> None:
     assert list(vertical.errors) == ["seat_acc_z"] and abs(vertical.errors["seat_acc_z"]) < 0.02
     run = car.run(road, engine="auto", channels=["seat_acc_x"])
     assert run.recording.statistics.engine == "mujoco" and "-3 % (seat_acc_x)" in run.engine_reason
+
+
+def test_errors_are_left_out_without_a_change_of_the_run(tmp_path, capsys) -> None:
+    """Nothing is claimed: neither errors nor the wider range that they allow; "auto" then takes MuJoCo."""
+    car, road = Car.load("sedan"), Road("C", speed=60.0, duration=3.0)
+    stated = car.run(road, "reduced", channels=["seat_acc_z"])
+    run = car.run(road, "reduced", channels=["seat_acc_z"], stated_errors=False)
+    np.testing.assert_array_equal(run["seat_acc_z"], stated["seat_acc_z"])
+    statistics = run.recording.statistics
+    assert stated.recording.statistics.errors and not statistics.errors
+    assert NOT_COMPUTED in statistics.notices and NOT_COMPUTED not in stated.recording.statistics.notices
+    assert stated.recording.statistics.within_validity and not statistics.within_validity
+    # The second run finds the matrices of the first.
+    assert run.car is stated.car and car.run(replace(road, speed=50.0), "reduced").car is not run.car
+    words = ["--input", "bump_1p5mm.csv", "--engine", "reduced", "--no-figures", "--output", f"{tmp_path}/run"]
+    assert shaker([*words, "--no-stated-errors"]) == 0 and NOT_COMPUTED in capsys.readouterr().out
+    assert NOT_COMPUTED in json.loads((tmp_path / "run/summary.json").read_text())["notices"]

@@ -36,7 +36,7 @@ def runs(ride):
 def by_hand(run, limits):
     """Shares of the evaluated time and first times of |v| above the limits, from the recorded velocities."""
     speeds = {wheel: np.abs(run[f"damper_{wheel}_velocity"]) for wheel in limits}
-    late = run.time >= run.skip - 1e-9
+    late = (run.time >= run.skip - 1e-9) & (run.time < run.signal.duration - 1e-9)
     shares = {wheel: np.mean(speeds[wheel][late] > limit) for wheel, limit in limits.items()}
     return shares, {wheel: run.time[speeds[wheel] > limit][0] for wheel, limit in limits.items()}
 

@@ -1,11 +1,14 @@
 """Two tracks of ISO 8608: level, relation of the tracks against the integral, delay of the rear, speed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
 from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.iso_road import IsoRoad, Side, drive, isotropic_coherence
 from vehicle.signals.excitation.tyre_envelope import CAM_SETS, TyreEnvelope
@@ -86,6 +89,98 @@ def test_the_rear_meets_the_same_road_later_by_a_part_of_a_step():
         source="second derivation: sinc interpolation",
     )  # fmt: skip
     assert not slow.displacement["fl"][: int(late * 1000)].any()
+
+
+def relative_lines(road, steps, step):
+    """Complex amplitudes of the tracks on the lines of a road of one period, over those of the class; (2, lines)."""
+    tracks = np.array([np.fft.rfft(road.height(0.0, step, steps, side, 0.4 / step)) for side in ("right", "left")])
+    n = np.fft.rfftfreq(steps, step)
+    inside = np.flatnonzero((n >= road.lowest) & (n <= road.highest))
+    inside = inside[: inside.size // 4 * 4]
+    size = np.sqrt(2.0 * road.level * (n[inside] / 0.1) ** -2.0 / (steps * step)) * np.sinc(n[inside] * road.patch)
+    return n[inside], tracks[:, inside] * 2.0 / steps / size
+
+
+@pytest.mark.parametrize("coherence", [0.0, 0.5, 0.9])
+def test_over_four_lines_each_track_has_the_power_of_the_class(coherence):
+    """Cross terms of mean and difference cancel over a quadruple, on single lines they do not."""
+    road = IsoRoad(level=CLASSES["B"], seed=3, track=TRACK, coherence=coherence, patch=0.1)
+    _, tracks = relative_lines(road, 10_000, 0.02)
+    power = np.abs(tracks) ** 2
+    quadruples = power.reshape(2, -1, 4).mean(axis=2)
+    cross = (tracks[0] * tracks[1].conj()).reshape(-1, 4).mean(axis=1)
+    for name, found, expected in (
+        ("level of each track over four lines", quadruples, 1.0),
+        ("cross spectrum of the tracks over four lines", cross.real, coherence),
+        ("quadrature of the tracks over four lines", cross.imag, 0.0),
+    ):
+        validated(
+            "Roads and excitation", f"{name}, coherence {coherence:g}", found, np.full(found.shape, expected), abs=1e-9,
+            source="closed form: class of ISO 8608",
+        )  # fmt: skip
+    # 1 +- sqrt(1 - g^2) cos(psi - phi), with any phase difference.
+    assert np.ptp(power) == pytest.approx(2.0 * np.sqrt(1.0 - coherence**2), rel=0.02)
+
+
+def test_on_an_isotropic_road_a_quadruple_keeps_a_second_difference():
+    """g changes within four lines: the signs + - - + leave 1/2 (Delta^2 sqrt(1 - g^2)) cos theta of a quadruple."""
+    road = IsoRoad(level=CLASSES["B"], seed=3, track=TRACK)
+    n, tracks = relative_lines(road, 10_000, 0.02)
+    cross_terms = np.sqrt(1.0 - isotropic_coherence(n, TRACK) ** 2).reshape(-1, 4)
+    rest = np.abs(cross_terms @ [1.0, -1.0, -1.0, 1.0]) / 4.0
+    found = np.abs((np.abs(tracks) ** 2).reshape(2, -1, 4).mean(axis=2) - 1.0)
+    assert (found <= rest + 1e-9).all() and rest.max() < 0.003
+    np.testing.assert_allclose((tracks[0] * tracks[1].conj()).real, isotropic_coherence(n, TRACK), atol=1e-9)
+    independent = replace(road, quadruples=False)
+    power = (np.abs(relative_lines(independent, 10_000, 0.02)[1]) ** 2).reshape(2, -1, 4).mean(axis=2)
+    assert np.abs(power - 1.0).max() > 0.5
+
+
+def test_a_road_repeats_after_the_evaluated_span():
+    """The lead-in is the end of the period, for the late rear wheels and with cams as well."""
+    tyre = TyreEnvelope.of(next(iter(CAM_SETS.values())), radius=0.3, patch=0.12)
+    wheels: dict[str, tuple[float, Side]] = {"fr": (0.0, "right"), "rl": (2.649, "left")}
+    for envelope in (None, tyre):
+        road = IsoRoad(level=CLASSES["C"], seed=5, track=TRACK, envelope=envelope)
+        signal = drive(road, speed=SPEED, wheels=wheels, duration=9.5, begin=3.5)
+        for name in wheels:
+            for each in (signal.displacement, signal.profile, signal.slope_velocity):
+                if name in each:
+                    # From the end of the rise at the rear wheels, 1.13 s, to the end.
+                    np.testing.assert_array_equal(each[name][1140:3501], each[name][7140:])
+        assert "repeats after 6 s" in signal.source
+
+
+def test_the_span_holds_each_wave_of_the_class_whole():
+    """All of the road is on the lines k/6 s, with the level of the class over quadruples, nothing between them."""
+    road = IsoRoad(level=CLASSES["C"], seed=5, track=TRACK, coherence=0.5)
+    signal = drive(road, speed=SPEED, wheels={"fr": (0.0, "right")}, duration=9.5, begin=3.5)
+    span = signal.displacement["fr"][evaluated_span(signal.time.size, signal.timestep, 3.5)]
+    power = np.abs(np.fft.rfft(span)) ** 2 / span.size**2 * 2.0
+    frequency = np.fft.rfftfreq(span.size, 1e-3)
+    assert span.size == 6000 and 2.0 in frequency
+    inside = (frequency >= 0.011 * SPEED) & (frequency <= 10.0 * SPEED)
+    assert power[~inside][1:].max() < 1e-20 * power.max()
+    n = frequency[inside] / SPEED
+    count = n.size // 4 * 4
+    relative = (power[inside] * 120.0 / (CLASSES["C"] * (n / 0.1) ** -2.0))[:count].reshape(-1, 4)
+    # Where waves are a third of a picometre high, rounding of the heights counts.
+    np.testing.assert_allclose(relative.mean(axis=1), 1.0, rtol=1e-6)
+
+
+def test_the_record_without_a_begin_is_longer_than_the_drive_and_repeats_nowhere():
+    road = IsoRoad(level=CLASSES["C"], seed=5, track=TRACK, quadruples=False)
+    signal = drive(road, speed=SPEED, wheels={"fr": (0.0, "right"), "rr": (2.6, "right")}, duration=9.5)
+    # The sum of waves of the equation in the module, with one pair of phases a line and the period of the record.
+    length = (9500 + 1 + 130) * SPEED / 1000.0
+    k = np.arange(int(np.ceil(0.011 * length)), int(10.0 * length) + 1)
+    n, g = k / length, isotropic_coherence(k / length, TRACK)
+    phi, psi = 2.0 * np.pi * np.random.Generator(np.random.PCG64(5)).random((int(k[-1]), 2))[k - 1].T
+    size = np.sqrt(2.0 * CLASSES["C"] * (n / 0.1) ** -2.0 / length)
+    for sample in (2000, 9500):
+        turn = 2.0 * np.pi * n * SPEED * sample / 1000.0
+        z = size @ (np.sqrt((1 + g) / 2) * np.cos(turn + phi) + np.sqrt((1 - g) / 2) * np.cos(turn + psi))
+        assert signal.displacement["fr"][sample] == pytest.approx(z, abs=1e-12)
 
 
 def test_tracks_can_be_equal_or_unrelated():

@@ -58,7 +58,7 @@ def test_a_full_disk_is_one_error_and_the_old_file_stays(ending, tmp_path):
     write_whole(path, WRITERS[ending])
     before = path.read_bytes()
     assert len(before) > 5000
-    for size in (1000, len(before) // 2, len(before) - 1):
+    for size in (0, 100, 1000, len(before) // 2, len(before) - 1):
         with largest_file(size), pytest.raises(OutputError, match="cannot be written"):
             write_whole(path, WRITERS[ending])
         assert path.read_bytes() == before

@@ -57,10 +57,10 @@ def test_change_against_a_grid_of_cars(sedan):
     changes = [tuple(f"{each.path}={value!r}" for each, value in zip(RANGES, car, strict=True)) for car in cars]
     table = plan_sweep(sedan, changes, ride, SweepSettings(engine="reduced")).run()
     assert table.column("weighted")[-len(cars) :].min() > limit
-    # The figures are those of a single run of the changed car; batches run in single precision.
+    # The figures are those of a single run of the changed car within 0.03 %: a search steps at 0.5 ms.
     again = found.car.run(ride, engine="reduced")
-    assert found.after[0] == pytest.approx(again.comfort().weighted.overall, rel=1e-5)
-    assert found.before[0] == pytest.approx(run.comfort().weighted.overall, rel=1e-5)
+    assert found.after[0] == pytest.approx(again.comfort().weighted.overall, rel=3e-4)
+    assert found.before[0] == pytest.approx(run.comfort().weighted.overall, rel=3e-4)
     assert found.change.active == (0,) and "the ride" in found.sentence
 
 
@@ -77,9 +77,9 @@ def test_targets_that_exclude_each_other(sedan):
 def test_a_coordinate_is_changed_by_a_length(sedan):
     """The change of a coordinate through 0 has a size and a text in mm."""
     car = sedan.with_({"hardpoints.seat_rail.y": 0.0})
-    limit = 0.999 * car.run(road("C", 80, duration=2.2), engine="reduced").comfort().weighted.overall
+    limit = 0.999 * car.run(road("C", 80, duration=3.0), engine="reduced").comfort().weighted.overall
     ranges = [Range(path="hardpoints.seat_rail.y", low=-0.4, high=0.4)]
-    found = meet_targets(car, targets(limit, 0.1), ranges, duration=2.2)
+    found = meet_targets(car, targets(limit, 0.1), ranges, duration=3.0)
     assert found.change.feasible and found.ranges[0].is_linear
     assert found.values[0] == pytest.approx(0.05 * found.change.position[0])
     assert next(line for line in found.lines() if "seat_rail.y" in line).split()[4] == "mm"
@@ -122,7 +122,7 @@ def test_command(tmp_path, capsys, monkeypatch):
     weighted = weighted_record(run.recording.timestep, run["seat_rail_acc_z"], "Wk")[run.evaluated]
     lines = weighted_lines(run.recording.timestep, weighted[None], [1.0])
     error, figure = float(overall_error(lines[None])[0]), summary["figures"]["ride"]
-    assert figure["after_error"] == pytest.approx(error * figure["after"], rel=1e-4)
+    assert figure["after_error"] == pytest.approx(error * figure["after"], rel=5e-4)
     assert f"{number(figure['after'])} +- {number(2.0 * figure['after_error'], 2)}  met within +-" in said
     path = "front.bushings.tyre.stiffness.z"
     assert changed[path].value == pytest.approx(summary["parameters"][path]["after"])

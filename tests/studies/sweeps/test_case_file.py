@@ -115,7 +115,7 @@ def test_command(tmp_path, capsys, monkeypatch):
             ride = road(row["input"][5], 60, duration=3)
             single = car.with_(changes[row["car"]]).run(ride, engine="reduced").comfort()
             # Batches run in single precision.
-            assert float(row["weighted [m/s2]"]) == pytest.approx(single.weighted.overall, rel=2e-5)
+            assert float(row["weighted [m/s2]"]) == pytest.approx(single.weighted.overall, rel=3e-4)
     values = {(row["input"], row["car"]): float(row["weighted [m/s2]"]) for row in rows}
     for row in rows:
         base = "laden" if row["car"].startswith("laden") else UNCHANGED

@@ -42,12 +42,12 @@ def test_changes_are_those_of_single_runs_and_ranked_by_brute_force(name, ride, 
         return (values.cushion or values).weighted.overall
 
     base, largest = comfort(car), {}
-    assert found.base == pytest.approx(base, rel=1e-5)
+    # At the step of a sweep, 0.5 ms, weighted comfort is up to 0.022 % off, 0.002 % between cars.
+    assert found.base == pytest.approx(base, rel=3e-4)
     for each in found.effects:
         assert (each.low, each.high) == pytest.approx((0.9 * each.value, 1.1 * each.value))
         single = [100.0 * (comfort(car.with_({each.path: value})) / base - 1.0) for value in (each.low, each.high)]
-        # Batches run in single precision: 1e-5 of a value, so 1e-3 points.
-        assert (each.change_low, each.change_high) == pytest.approx(single, abs=2e-3)
+        assert (each.change_low, each.change_high) == pytest.approx(single, abs=6e-3)
         largest[each.path] = max(map(abs, single))
     assert [each.path for each in found.effects] == sorted(largest, key=lambda path: -largest[path])
     assert {*largest, *found.without} == set(varied_parameters(car.vehicle, groups))

@@ -72,7 +72,7 @@ def test_the_options_are_one_object(words, design):
     ]
     settings = settings_of(parser().parse_args(typed, argparse.Namespace(held=ExitStack())))
     drive = InputChoice(road=("B",), speed=(80.0,), seed=(3,))
-    runs = SweepSettings(skip=1.0, measure=("travel",), retry_failed=True)
+    runs = SweepSettings(jobs=None, skip=1.0, measure=("travel",), retry_failed=True)
     assert settings == SweepStudy(design=design, inputs=drive, runs=runs, destination=Destination(resume=True))
 
 
@@ -82,7 +82,7 @@ def test_a_study_in_python_writes_the_table_of_the_command(signal, tmp_path, cap
     study = SweepStudy(
         design=EveryCombination({"damper.viscous": [1500, 2000]}),
         inputs=signal,
-        runs=SweepSettings(skip=0.5, engine="reduced"),
+        runs=SweepSettings(jobs=None, skip=0.5, engine="reduced"),
         destination=Destination(output=tmp_path / "b"),
         report=ReportChoice(report=""),
     )
@@ -296,7 +296,7 @@ def test_an_interrupted_force_keeps_the_old_sweep_and_goes_on(signal, tmp_path, 
 
 
 def test_a_varied_parameter_without_effect_is_noted():
-    car, road = Car.load("sedan"), Road("B", speed=80, duration=6)
+    car, road = Car.load("sedan"), Road("B", speed=80, duration=8)
     (note,) = plan_sweep(car, {"front.damper.viscous": [1000, 2000], "rear.damper.viscous": [1000]}, road).notes
     assert note.startswith("front.damper.viscous=1000: has no effect") and "front.damper.viscous_law" in note
     assert not plan_sweep(car, {"front.damper.coulomb_friction": [40, 80]}, road).notes

@@ -14,7 +14,7 @@ from vehicle.drawing.rendering.backend import variables
 from vehicle.drawing.rendering.layout import Layout, Picture
 from vehicle.drawing.rendering.shot import Cut
 from vehicle.errors import OutputError
-from vehicle.threads import one_thread_each
+from vehicle.threads import one_thread_each, processors
 
 
 class Drawable(Protocol):
@@ -41,7 +41,7 @@ MOST = 8
 
 def drawing_jobs() -> int:
     """Return the number of processes for a film: the number of processors, up to `MOST`."""
-    return min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, MOST)
+    return min(processors(), MOST)
 
 
 def drawn_by(jobs: int, shot: Drawable, backend: str) -> Iterator[Picture]:

@@ -2,7 +2,7 @@
 
 import mujoco
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from vehicle.drawing.rendering.motion import Motion, State
 from vehicle.model.parameters.composition import PlacedWheel
@@ -32,9 +32,10 @@ class RollingWheel:
     def turn(self, data: mujoco.MjData, state: State, factor: float, time: float) -> None:
         """Set the poses of the shapes; the factor exaggerates the motion of the hub, not the rolling."""
         (centre,) = self.motion.moved(state, factor, self.hub, self.centre)
-        frame = Rotation.from_rotvec(factor * state.rotation[self.hub]).as_matrix()
+        turn = scipy.spatial.transform.Rotation
+        frame = turn.from_rotvec(factor * state.rotation[self.hub]).as_matrix()
         # The rim spins in the axes of the hub; the tyre follows the hub alone.
-        spin = frame @ Rotation.from_euler("y", self.rate * time).as_matrix()
+        spin = frame @ turn.from_euler("y", self.rate * time).as_matrix()
         for geoms, rotation in ((self.tyre, frame), (self.rim, spin)):
             data.geom_xpos[geoms] = centre + self.arms[geoms] @ rotation.T
             data.geom_xmat[geoms] = (rotation @ self.frames[geoms]).reshape(-1, 9)

@@ -22,7 +22,6 @@ import numpy.typing as npt
 from vehicle.arrays import Vector
 from vehicle.engines.linear.part_motions import cross_matrix
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.model.assembly.spec import fixed_masses
 from vehicle.model.flexbody.attached_mass import attached
 from vehicle.model.flexbody.superelement import Superelement
@@ -126,13 +125,14 @@ def same_body(body: TrimmedBody, reference: TrimmedBody) -> bool:
     return same_point and body.cog == reference.cog and all(math.isclose(*pair, rel_tol=SAME) for pair in pairs)
 
 
-def body_change(vehicle: Vehicle, reference: CarModel, trimmed: Superelement) -> BodyChange:
+def body_change(vehicle: Vehicle, reference: CarModel, trimmed: Superelement, modes: slice) -> BodyChange:
     """Return the coordinate transformation between a car and a reference car with the same body model.
 
     Args:
         vehicle: the new car; `same_body` must be true.
         reference: the reference car.
         trimmed: body model of the reference car without the parts fixed to it.
+        modes: velocity coordinates of its flexible modes.
     """
     body, reference_body = vehicle.body, reference.vehicle.body
     factor = body.model_factor / reference_body.model_factor if body.flexible else 1.0
@@ -151,7 +151,7 @@ def body_change(vehicle: Vehicle, reference: CarModel, trimmed: Superelement) ->
         return BodyChange(
             trimmed=trimmed, body=reference.superelement, move=move, whole=move, shift=shift, hanging=hanging
         )
-    scaled, modes = trimmed.scaled(factor), read_layout(model).modes.velocities
+    scaled = trimmed.scaled(factor)
     before, after = (attached(shape, fixed_masses(vehicle, shape)) for shape in (trimmed, scaled))
     # A = X_0^-1 X f^-1/2, and the rigid part Y_0 A - Y f^-1/2.
     elastic = np.linalg.solve(before.elastic, after.elastic) * factor**-0.5

@@ -12,7 +12,7 @@ the stiffness matrix of the reference car, so that no missing term stays hidden.
 has other modal coordinates and another origin; see `vehicle.engines.linear.body_change` for the transformation.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -33,11 +33,18 @@ from vehicle.engines.simulation.standing import require_body_modes, require_stan
 from vehicle.engines.simulation.static_trim import AtRest, StaticTrim, at_rest, settle, static_loads, unsolved
 from vehicle.model.assembly.element_numbers import TURNING, Numbers, element_numbers
 from vehicle.model.flexbody.superelement import Superelement
+from vehicle.model.laws.damper import unpack
 from vehicle.model.parameters.vehicle import Vehicle
 
 AGREEMENT = 1e-9
 """Maximum difference between the sum of terms and the stiffness matrix of the same car, over its largest entry: both
 are central differences with a round-off of 1e-10 of that entry."""
+
+FRICTION = ("smoothing", "friction_limit", "static_limit", "stribeck_velocity", "stribeck_exponent")
+"""Numbers of a damper that enter neither the matrices nor the static forces."""
+
+STORED = 16
+"""Maximum number of stored variants: enough for grids of a few parameters beside friction or curves."""
 
 BREAKPOINT_MARGIN = 10.0 * DIFFERENCE_STEP
 """Distance [m] from a breakpoint of a curve within which the central differences of a built car cross it."""
@@ -79,6 +86,7 @@ class VariantTerms:
         self.sum = self._stiffness(rows_at_rest, joint_springs(model), car.static.preload, self.rest_state, same)
         difference = self.sum + geometric - matrices.system.stiffness
         scale = float(np.max(np.abs(matrices.system.stiffness)))
+        self.stored: dict[Hashable, CarVariant | None] = {}
         self.complete = bool(np.max(np.abs(difference)) <= AGREEMENT * scale)
         """True if the sum of the terms equals the stiffness matrix of the reference car"""
 
@@ -99,7 +107,10 @@ class VariantTerms:
         return dict(zip(names, gravity * differences(self.rows, read), strict=True))
 
     def variant(self, vehicle: Vehicle) -> CarVariant | None:
-        """Compute the car with other parameter values; None if more than laws and masses differ: build its model.
+        """Return the car with other parameter values; None if more than laws and masses differ: build its model.
+
+        Cars whose matrices have equal numbers, which may differ in friction and in steeper segments of the curves of
+        dampers, are one variant, computed once.
 
         Raises:
             ConfigurationError, SimulationError: the car is invalid; see
@@ -107,11 +118,31 @@ class VariantTerms:
         """
         if not self.complete or not same_geometry(vehicle, self.car.vehicle):
             return None
-        change = body_change(vehicle, self.car, self.trimmed_body)
+        change = body_change(vehicle, self.car, self.trimmed_body, self.rows.layout.modes.velocities)
         require_body_modes(vehicle, change.trimmed)
         element_values = element_numbers(vehicle, change.body, (self.car.vehicle, self.numbers))
         if not all(map(_same_fields, element_values, self.numbers)):
             return None
+        key = (vehicle.body, vehicle.composition.forces, *self._entering(element_values))
+        if key not in (stored := self.stored):
+            # Another thread may store a variant at the same time.
+            added = [*stored.items(), (key, self._variant(vehicle, element_values, change))]
+            self.stored = stored = dict(added[-STORED:])
+        return stored[key]
+
+    def _entering(self, element_values: list[Numbers]) -> Iterator[Hashable]:
+        """Return the numbers that enter matrices and static forces, of the elements that differ from the reference."""
+        for index, (element, reference) in enumerate(zip(element_values, self.numbers, strict=True)):
+            for name, value in element.items() if element is not reference else ():
+                if name.startswith("actuator/"):
+                    record = unpack(value)
+                    record[list(FRICTION)] = 0.0
+                    yield index, name, record.tobytes()
+                elif not name.startswith("law/valve/"):
+                    yield index, name, value.tobytes()
+
+    def _variant(self, vehicle: Vehicle, element_values: list[Numbers], change: BodyChange) -> CarVariant | None:
+        """Compute a variant, see `variant`."""
         values = {name: value for element in element_values for name, value in element.items()}
         rows = self.rows.with_laws(values)
         springs, dampers = joint_springs(rows.model), joint_dampers(rows.model).copy()

@@ -10,9 +10,7 @@ damper as soft as its force over its stroke, so no constant FRF describes both. 
 constants D already. A law over displacement, whose tangent at rest the poles contain, has the rest g(x), with
 memory if it is rubber friction: g is replaced by k x + c x', k = mean(g x)/mean(x^2), c = mean(g x')/mean(x'^2).
 
-The remainder acts as forces f = -(c - D) v, so that at each line
-
-    v = (I + T_vf (c - D))^-1 T_vz z,    y = T_yz z - T_yf (c - D) v.
+`vehicle.engines.reduced.linear_twin` has the responses with other damping constants.
 
 Sources: Caughey, J. Acoust. Soc. Am. 35 (1963) 1706; Roberts and Spanos, Random Vibration and Statistical
 Linearization, 1990, chapter 2.
@@ -23,6 +21,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from vehicle.arrays import Complex, Vector
+from vehicle.engines.reduced.linear_twin import linear_twin
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.model.laws.damper import damper_law
 from vehicle.model.parameters.force_elements import Damper
@@ -82,25 +81,6 @@ def linearised_response(
         wheels: names of the p plates.
         frequency: lines [Hz], (m,).
     """
-    s = np.asarray(2j * np.pi * np.asarray(frequency), dtype=np.complex128)
     inputs = [model.matrices.system.inputs.index(wheel) for wheel in wheels]
-    positions = model.outputs(channels).poles
-    excess = (damping - model.matrices.viscous)[:, None]
-    plate, rate, force = model.height[:, inputs], model.velocity[:, inputs], model.force
-    # T_vz: a plate acts by its displacement and by its velocity s z.
-    slip = _transfer(model, model.slip, plate, s) + s * _transfer(model, model.slip, rate, s)
-    # I + T_vf (c - D) at each line; (m, d, d).
-    coupling = np.eye(len(excess)) + np.moveaxis(_transfer(model, model.slip, force * excess.T, s), -1, 0)
-    velocity = np.moveaxis(np.linalg.solve(coupling, np.moveaxis(slip, -1, 0)), 0, -1)
-    direct = _transfer(model, positions, plate, s) + s * _transfer(model, positions, rate, s)
-    by_force: Complex = _transfer(model, positions, force, s)
-    displacement = direct - (by_force[:, :, None] * (excess[:, :, None] * velocity)[None]).sum(axis=1)
-    return np.asarray(s**2 * displacement)
-
-
-def _transfer(model: PoleModel, rows: Complex, residues: Complex, s: Complex) -> Complex:
-    """Return the FRFs of Re(rows xi) to inputs with residues (p, i) on the poles; (outputs, i, m)."""
-    products = rows[:, None, :] * residues.T[None]
-    # Re(a xi) = (a xi + conj(a xi))/2: a stored pole and its conjugate; products: (outputs, inputs, poles).
-    positive_part = 0.5 * products @ (1.0 / (s - model.poles[:, None]))
-    return np.asarray(positive_part + 0.5 * products.conj() @ (1.0 / (s - model.poles.conj()[:, None])))
+    unit_plates = np.eye(len(model.matrices.system.inputs))[:, inputs, None]
+    return linear_twin(model, channels, frequency, unit_plates).responses(damping)

@@ -21,6 +21,7 @@ from vehicle.engines.reduced.table_layout import BLOCK, INNER_BLOCK, LANES, PAST
 from vehicle.engines.reduced.validity import Validity, check_stride, rotating_bodies, tyre_outputs
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.engines.simulation.recording import Statistics
+from vehicle.mapped_table import release
 from vehicle.model.laws.controller_fmu import controllers
 from vehicle.model.laws.law_exceptions import exceptions_of_laws
 from vehicle.model.parameters.force_elements import Damper
@@ -28,6 +29,9 @@ from vehicle.signals.excitation.signal import Signal
 
 SAMPLES = 64 * INNER_BLOCK
 """Samples in a block of plate displacements."""
+
+PLATE_SAMPLES = 65_536
+"""Samples in a block of a recorded plate, which limits the memory of their splines."""
 
 
 def time_steps(signal: Signal, record_rate: float, longest: float) -> tuple[int, int]:
@@ -151,7 +155,7 @@ class GroupRun:
             rows[f"{matrices.damper_names[index]}_coefficient"] = speeds + 3 * count + k
         curves = speeds + 3 * count + len(self.feedback.controlled)
         rows |= {f"law_{index}": curves + index for index in range(len(laws))}
-        static_values = np.zeros((len(channels), self.cars.table.shape[1]))
+        static_values, plate_rows = np.zeros((len(channels), self.cars.table.shape[1])), dict[int, int]()
         for row, name in enumerate(channels):
             if name in tyre_wheels:
                 static_values[row, : len(self.models)] = [load[tyre_wheels[name]] for load in self.tyre_load]
@@ -165,8 +169,13 @@ class GroupRun:
             elif name not in rows:
                 wheel, table[row, rows_of_cars] = name.removeprefix("plate_").removesuffix("_displacement"), 0.0
                 if wheel in self.driven:
-                    displacement = self.plates[: table.shape[2] * self.every : self.every]
-                    table[row, rows_of_cars] = displacement[:, 3 * self.driven.index(wheel)]
+                    plate_rows[row] = 3 * self.driven.index(wheel)
+        every, samples = self.every, table.shape[2]
+        for begin in range(0, samples * bool(plate_rows), PLATE_SAMPLES):
+            part = slice(begin, min(begin + PLATE_SAMPLES, samples))
+            displacements = self.plates[part.start * every : part.stop * every : every]
+            for row, column in plate_rows.items():
+                table[row, rows_of_cars, part] = displacements[:, column]
         modal_weights = [car.weights(model.modal) for car, model in zip(self.factors, self.models, strict=True)]
         positions, rotations = list[Vector](), list[Vector]()
         for model, shape in zip(self.models, modal_weights, strict=True):
@@ -261,6 +270,7 @@ class GroupRun:
             block = {"rates": rates, "plate_z": plate_z, "first": sample, "step": step}
             record = checked("March", packed("March", constant | block), LANES if self.element == SINGLE else 1)
             march(ctypes.c_void_p(record.address))
+            release(table)
             sample += size
 
     @staticmethod

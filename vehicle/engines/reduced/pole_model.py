@@ -143,16 +143,8 @@ class PoleModel:
         return Outputs(poles=poles, height=height, velocity=velocity)
 
 
-# Cars that differ in friction or in curves beyond their softest slope have the same matrix.
+# Cars that differ in friction or in curves beyond their softest slope share their matrices (`VariantTerms.variant`).
 @lru_cache(maxsize=16)
-def _eigenvectors(state: bytes, size: int) -> tuple[Complex, Complex]:
-    """Return eigenvalues and eigenvectors of a real matrix from the bytes of its rows."""
-    values, vectors = np.linalg.eig(np.frombuffer(state).reshape(size, size))
-    # All these cars share the arrays.
-    values.flags.writeable = vectors.flags.writeable = False
-    return values, vectors
-
-
 def pole_model(matrices: CarMatrices) -> PoleModel:
     """Return poles, residues and outputs of an assembled car in continuous time."""
     form = first_order(matrices.system)
@@ -173,7 +165,7 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         further[form.branches, further.shape[1] - lines :] = matrices.slips
     inputs = np.hstack([form.input, form.input_rate, form.friction, further])
     # x = V xi: b = V^-1 B are the residues, and the outputs are rows times V.
-    poles, vectors = _eigenvectors(form.state.tobytes(), len(form.state))
+    poles, vectors = np.linalg.eig(form.state)
     selected = np.concatenate([np.flatnonzero(poles.imag > 0.0), np.flatnonzero(poles.imag == 0.0)])
     pairs = int(np.count_nonzero(poles.imag > 0.0))
     residues = np.linalg.solve(vectors, inputs.astype(complex))[selected]

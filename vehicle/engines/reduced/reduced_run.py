@@ -19,6 +19,7 @@ from vehicle.engines.reduced.validity import LARGEST_STATED_ANGLE
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.tyre_contact import lift_off_notices, pulling_tyres
 from vehicle.engines.simulation.tyre_variation import with_run_out
+from vehicle.mapped_table import table_of
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units, wheel_channels
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -79,7 +80,7 @@ def simulate_reduced(
     present = {*names, *forces, *tyres}
     wanted = (*wheeled, *(f"law_{index}" for index in range(len(model.laws)))) if forms else ()
     more = [name for name in wanted if name not in present and not name.startswith("plate_")]
-    table = np.empty((len(names) + len(forces) + len(tyres) + len(more), 1, samples))
+    table = table_of((len(names) + len(forces) + len(tyres) + len(more), 1, samples))
     columns = [inputs.index(wheel) for wheel in signal.wheels]
     factors = car_factors([model], interval / every, columns, exact=True, present_load=rolling)
     started = clock.perf_counter()

@@ -41,6 +41,7 @@ from vehicle.engines.reduced.stated_errors import (
     comfort_points,
     weighted_squares,
 )
+from vehicle.mapped_table import release
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.signals.excitation.signal import Signal
 
@@ -257,6 +258,7 @@ def rms_errors_of(
         # In a window that is not evaluated only the slow poles move on, from every `every`-th sample.
         part = slice(window * length, min((window + 1) * length, time.size), 1 if window in chosen else every)
         block = {name: values[part] for name, values in record.items()}
+        release(block[names[0]])
         plates = plate_inputs(model, signal, time[part], block, tyre_load)
         histories = run_inputs(model, plates, block, time[part])
         # The car is at rest at the first sample of the record.

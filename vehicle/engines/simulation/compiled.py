@@ -32,7 +32,7 @@ class CompiledRows:
     def __init__(self, rows: Rows) -> None:
         if rows.model.nuserdata < USER_SIZE:
             raise SimulationError(
-                f"the model has {rows.model.nuserdata} user data, compiled callbacks need {USER_SIZE}"
+                f"the model has {rows.model.nuserdata} entries of user data; the compiled callbacks need {USER_SIZE}"
             )
         self.rows, self.model = rows, rows.model
         self.attached: list[tuple[mujoco.MjData, Packed]] = []

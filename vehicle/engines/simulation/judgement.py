@@ -6,6 +6,7 @@ from vehicle.digits import number
 from vehicle.engines.simulation.recording import Energies, Recording
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.machine import physical_memory
+from vehicle.mapped_table import release, size_in_memory
 
 LARGEST = 1e8
 """Maximum value of a channel: forces of cars are below 1e6 N, accelerations below 1e5 m/s2."""
@@ -27,7 +28,8 @@ samples at 1 kHz and of 1e-3 at this rate."""
 def require_samples(samples: float, channels: int) -> None:
     """Reject a run with a recording of a single sample, or with one that exceeds the memory, before it starts.
 
-    Memory: 8 bytes for every sample of every channel, at most half of the memory; evaluations work in blocks.
+    Memory: 8 bytes for every sample of every channel, at most half of the memory, unless they are in a file;
+    evaluations work in blocks.
 
     Raises:
         ConfigurationError: the message contains the required and the available amount.
@@ -37,12 +39,12 @@ def require_samples(samples: float, channels: int) -> None:
             f"solver.record_rate: the signal lasts {number(samples, 2)} sampling intervals but must last at least 1; "
             "give a longer signal"
         )
-    needed, there = 8.0 * samples * channels, physical_memory()
+    needed, there = size_in_memory(8.0 * samples * channels), physical_memory()
     if needed > 0.5 * there:
         raise ConfigurationError(
             f"solver.record_rate: {channels} channels of {samples:.3g} samples need {needed / 1e9:.3g} GB but may "
             f"need at most {0.5 * there / 1e9:.3g} GB, half the memory of this machine; lower the rate, record "
-            "fewer channels, or cut the record into parts"
+            "fewer channels, cut the record into parts, or free as much disk for temporary files (TMPDIR)"
         )
 
 
@@ -60,6 +62,7 @@ def require_finite(recording: Recording) -> None:
                 f"channel {name} is {values[bad]:.3g} {recording.units[name]} at t = {recording.time[bad]:.4f} "
                 "s, impossible for a car; check the input and the parameters that you changed"
             )
+        release(values)
 
 
 def judge_energy(energies: Energies, rate: float, step: float) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.sampling import Samples, empty_samples
 from vehicle.engines.simulation.structures import offsets
 from vehicle.engines.simulation.tyre_contact import lift_off_notices, pulling_tyres
+from vehicle.mapped_table import release, table_of
 from vehicle.names import AXES, channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
@@ -103,10 +104,12 @@ class Recorder:
             "first_velocity": modes.first_velocity,
             "half": -0.5 * self.step,
         }
-        self.channels = {name: np.zeros(samples) for name in car.vehicle.channels}
-        self.channels |= {name: np.zeros(samples) for name in requested}
-        # Positions during the run; differentiated twice at the end.
-        self.channels |= {name: np.zeros(samples + AHEAD) for name in car.vehicle.acceleration_channels}
+        # Accelerations are positions during the run, AHEAD samples longer; differentiated twice at the end.
+        names, moving = [*car.vehicle.channels, *requested], car.vehicle.acceleration_channels
+        self.table = table_of((len(names), samples + AHEAD))
+        self.channels = {
+            name: row if name in moving else row[:samples] for name, row in zip(names, self.table, strict=True)
+        }
         # Finished poses, the sample index of every pose, and the poses of the samples in the buffers.
         self.poses = np.zeros((-(-samples // pose_every), car.model.nq))
         self.pose_index: list[int] = []
@@ -303,6 +306,7 @@ class Recorder:
         loss = loss + np.sum(modal_damping * b.modal_velocity**2, axis=1)
         loss = loss + b.spring_rates**2 @ joint_dampers(self.model)[self.spring_dofs]
         self._add_work(power_in, loss, every)
+        release(self.table)
         self.done += count
         self.filled = 0
 
@@ -357,6 +361,7 @@ class Recorder:
         time = uniform_time(samples=self.samples, timestep=interval)
         for name in self.car.vehicle.acceleration_channels:
             self.channels[name] = acceleration(self.channels[name], interval)
+            release(self.table)
         return Recording(
             time=time,
             channels=self.channels,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
+from vehicle.mapped_table import release
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -86,11 +87,13 @@ class Recording:
         return f"Recording({len(self.time)} samples, {len(self.channels)} channels, {self.statistics.engine})"
 
     def __getitem__(self, channel: str) -> Vector:
-        """Return the time history of a channel."""
+        """Return the time history of a channel; the pages of the others leave the memory."""
         try:
-            return self.channels[channel]
+            values = self.channels[channel]
         except KeyError:
             raise ConfigurationError(f"no channel {channel!r}; the recording has {', '.join(self.channels)}") from None
+        release(values)
+        return values
 
     def only(self, channels: Sequence[str]) -> Recording:
         """Return the recording with a subset of its channels."""

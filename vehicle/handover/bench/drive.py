@@ -12,6 +12,7 @@ from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car, Road
 from vehicle.runs.car.road import Drive
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.phase_averages import PhaseInputs, phase_inputs
 from vehicle.signals.excitation.road_drive import BEFORE_S, RoadDrive
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -132,7 +133,8 @@ def _probe(
     record: Signal, skip: float, interval: float, delays: Mapping[str, float] | None = None
 ) -> tuple[PhaseInputs, Signal]:
     """Return the inputs of the FRFs for a record, and the same as a signal; see `BenchDrive`."""
-    moving = {name: z[round(skip / record.timestep) :] for name, z in record.displacement.items() if np.any(z != z[0])}
+    part = evaluated_span(record.time.size, record.timestep, skip)
+    moving = {name: z[part] for name, z in record.displacement.items() if np.any(z != z[0])}
     inputs = phase_inputs(record.timestep, moving or record.displacement, delays, interval=interval)
     size = next(iter(inputs.samples.values())).size
     probe = Signal(

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from vehicle.handover.page.packed_numbers import integers, track
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.samples import Vector
+from vehicle.signals.analysis.spline import CubicSpline
 from vehicle.signals.excitation.signal import Signal
 
 LONGEST = 30.0
@@ -78,7 +78,7 @@ class PageInput:
             samples_of_track, step = integers(self.tracks[index])
             z = step * samples_of_track
             if ratio != 1.0 or behind != 0.0:
-                spline = CubicSpline(np.arange(samples), z)
+                spline = CubicSpline(np.arange(samples, dtype=np.float64), np.asarray(z, dtype=np.float64))
                 z = np.where(position > behind, spline(np.maximum(position - behind, 0.0)), 0.0)
             displacement[wheel] = np.asarray(z, dtype=np.float64)
         return dataclasses.replace(self.signal, time=self.signal.time[:count], displacement=displacement, profile={})

@@ -19,6 +19,7 @@ from vehicle.signals.excitation.crank_speed import crank_overrides, measured_spe
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.input_settings import DriveInput, PlateSettings
+from vehicle.signals.excitation.road_drive import evaluated_from
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.optional_library import extra
 from vehicle.signals.records.record_settings import RecordSettings
@@ -77,7 +78,8 @@ def _shake(
     if isinstance(source, DriveInput):
         from vehicle.runs.car.road import road_of
 
-        drive = road_of(source, others=settings.measured.measured is not None).under(choice.load(), choice.overrides)
+        road = road_of(source, others=settings.measured.measured is not None)
+        drive = evaluated_from(road.under(choice.load(), choice.overrides), settings.skip)
         file, stem = drive.road, drive.name
         choice = replace(choice, overrides=(*choice.overrides, *drive.overrides))
     else:
@@ -128,7 +130,7 @@ def _shake(
     controls = [damper.law.controlled for damper in car.vehicle.composition.dampers]
     for native in dict.fromkeys(control.fmu for control in controls if control and control.law == FMU):
         listener.say(f"controller  {native} runs as native code with all your rights")
-    road = None if drive is None else drive.summary(signal)
+    description = None if drive is None else drive.summary(signal)
     signal = signal if drive is None else replace(signal, source=drive.name)
     count, rate = len(channels or car.vehicle.channels), car.vehicle.solver.record_rate
     formats = [settings.time_format, *settings.formats]
@@ -137,7 +139,10 @@ def _shake(
     with output_folder(output, force=settings.destination.force, protect=protect) as folder:
         try:
             progress = listener.progress("simulation")
-            run = replace(car.run(signal, engine, progress=progress, channels=channels, skip=skip), road=road)
+            run = car.run(
+                signal, engine, progress=progress, channels=channels, skip=skip, stated_errors=settings.stated_errors
+            )
+            run = replace(run, road=description)
         except SimulationError as error:
             raise save_last_state(error, output) from None
         summary = write_run(

@@ -9,7 +9,7 @@ from vehicle.drawing.rendering.film_settings import FilmSettings
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination, ReportChoice
-from vehicle.settings import Settings, engine_setting, part, setting, skip_setting
+from vehicle.settings import Settings, engine_setting, part, setting, skip_setting, stated_errors_setting
 from vehicle.signals.excitation.crank_speed import RPM
 from vehicle.signals.excitation.input_settings import DriveInput, PlateSettings
 from vehicle.signals.formats.formats import TABLES, WRITTEN
@@ -36,6 +36,7 @@ class ShakerSettings(Settings):
     measured: MeasuredSettings = part(MeasuredSettings)
     report: ReportChoice = part(ReportChoice)
     engine: str = engine_setting("mujoco")
+    stated_errors: bool = stated_errors_setting()
     skip: float | None = skip_setting()
     rpm: str | None = setting(
         "speed of the crankshaft [1/min]; A:B is a run-up over --duration; A:B:STEP are steady speeds, a "

@@ -35,6 +35,7 @@ from vehicle.handover.page.moving_car import moving_picture, picture_rows, turni
 from vehicle.handover.page.packed_numbers import byte_runs, packed, text
 from vehicle.handover.page.page_input import LONGEST, SPEEDS, PageInput, RunRoad, page_input
 from vehicle.names import AXES, axle_and_side, is_wheel
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.weighting import weighting
 from vehicle.signals.excitation.signal import Signal
@@ -104,7 +105,7 @@ def trial_data(
         "interval": signal.timestep,
         "samples": drive.signal.time.size,
         "shortened": drive.signal.time.size < signal.time.size,
-        "skip": round(skip / signal.timestep),
+        "skip": evaluated_span(signal.time.size, signal.timestep, skip).start,
         **drive.data(base.plates),
         "plateCount": len(base.plates),
         "excited": base.plates.index(wheel),

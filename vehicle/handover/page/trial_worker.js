@@ -146,7 +146,7 @@ class Trial {
   async record(settings) {
     const asked = performance.now();
     await this.choose(settings);
-    const { data, module, places, skip } = this, { interval, ahead, weightings } = data, samples = this.count, evaluated = samples - skip;
+    const { data, module, places, skip } = this, { interval, ahead, weightings } = data, samples = this.count, evaluated = samples - 1 - skip;
     const outputs = [...data.positions, ...data.dampers.flatMap(({ velocity, force }) => [velocity, force]), ...(data.figures ?? []).flatMap((figure) => figure.outputs)], started = performance.now();
     const histories = this.run(settings, this.plates, samples + ahead, outputs), marched = performance.now();
     // Notices on quantities that left their valid range.
@@ -188,7 +188,7 @@ class Trial {
         module.differentiate(place, samples + ahead, interval, derivative, rate);
         return this.numbers(rate, samples);
       });
-      return REDUCTIONS[figure.reduction](ROWS[figure.rows](read, figure, interval).map((row) => row.subarray(skip)));
+      return REDUCTIONS[figure.reduction](ROWS[figure.rows](read, figure, interval).map((row) => row.subarray(skip, samples - 1)));
     });
   }
 
@@ -218,7 +218,7 @@ class Trial {
     this.cancelled = false;
     const { data, module, places, sine, ratio } = this, { interval, plateCount, excited, wheels, ahead } = data, resolution = 1 / (LINES * interval);
     const before = LINES * (data.road ? SETTLING.road : SETTLING.plates), samples = before + LINES + ahead, last = Math.round(HIGHEST / resolution);
-    module.begin_response(sine, this.plates + 16 * (plateCount * this.skip + excited), this.count - this.skip, 2 * plateCount, settings.level);
+    module.begin_response(sine, this.plates + 16 * (plateCount * this.skip + excited), this.count - 1 - this.skip, 2 * plateCount, settings.level);
     let seed = 12345;
     for (let realisation = 0; realisation < REALISATIONS; realisation++) {
       await new Promise((done) => setTimeout(done));

@@ -31,7 +31,7 @@ class EngineOrders:
     )
     spacing: float = quantity("m", "distance of two cylinders along the crankshaft", at_least=0.0, at_most=0.4)
     firing: tuple[float, ...] = ()
-    """firing order, as [1, 3, 4, 2], cylinder 1 at the end that the crank axis points to; needed"""
+    """firing order, for example [1, 3, 4, 2]; the crank axis points to the end of cylinder 1; required"""
     crank_axis: Point = quantity(
         "-", "direction of the crankshaft; it turns about it by the right-hand rule", length=3, default=(0.0, 1.0, 0.0)
     )

@@ -375,7 +375,7 @@ class Damper:
         ends, slopes = self.presliding_force, self.presliding_slope
         if len(ends) != len(slopes) or not 1 <= len(ends) <= MAX_SLIDERS:
             numbers = f"found {len(slopes)} values, but presliding_force has {len(ends)}"
-            raise ConfigurationError(f"Damper.presliding_slope: {numbers}; set a slope for each, 1 to {MAX_SLIDERS}")
+            raise ConfigurationError(f"Damper.presliding_slope: {numbers}; give both the same, 1 to {MAX_SLIDERS}")
         orders = ("force", ends, ends[::-1], "rise to 1"), ("slope", slopes, slopes, "fall from 1")
         for name, values, falling, shape in orders:
             if falling[0] != 1.0 or any(after >= value for value, after in itertools.pairwise(falling)):

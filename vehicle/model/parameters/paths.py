@@ -140,7 +140,11 @@ def _of_one_side(path: str) -> bool:
     return not SIDES.isdisjoint(path.split("."))
 
 
-def assignments(overrides: Iterable[str] | Mapping[str, Any]) -> list[str]:
+Overrides = Iterable[str] | Mapping[str, Any]
+"""Changes of parameters: path to value, or texts "path=value"."""
+
+
+def assignments(overrides: Overrides) -> list[str]:
     """Return overrides as texts "path=value".
 
     Args:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -32,21 +32,24 @@ from vehicle.model.laws.controller_fmu import require_controllers
 from vehicle.model.parameters.further_forces import new_tables
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.parameter_list import parameter_at
-from vehicle.model.parameters.paths import assignments
+from vehicle.model.parameters.paths import Overrides, assignments
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_file, load_vehicle, varied_file, vehicle_of
 from vehicle.model.parameters.vehicle_variants import VehicleVariants
 from vehicle.model.parameters.whole_body import restated
 from vehicle.runs.car.given_forces import GivenForce, with_histories
 from vehicle.runs.car.linear_response import force_frf, is_stuck, plate_frf
+from vehicle.runs.car.origin import Origin
 from vehicle.runs.car.outside_tests import with_range_notice
 from vehicle.runs.car.road import Road
+from vehicle.runs.car.road_estimate import RoadEstimate, road_estimate
 from vehicle.runs.car.run import Run
 from vehicle.runs.car.simulated_run import simulated_run
 from vehicle.runs.car.steady_car import SteadyCar
 from vehicle.runs.car.stepped_car import stepped_car
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.road_drive import evaluated_from
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.threads import one_blas_thread
@@ -54,16 +57,6 @@ from vehicle.threads import one_blas_thread
 if TYPE_CHECKING:
     from vehicle.model.parameters.parameter_list import Parameter
     from vehicle.runs.car.car_data import CarData
-
-Overrides = Iterable[str] | Mapping[str, Any]
-"""Changes of parameters: path to value, or texts "path=value"."""
-
-
-class Origin(TypedDict):
-    """Vehicle file of a car (None for the default car) and its changed parameters as "path=value"."""
-
-    file: str | None
-    overrides: list[str]
 
 
 class Car(SteadyCar):
@@ -83,6 +76,7 @@ class Car(SteadyCar):
         self._stepped: Car | None = None
         self._base: Car | None = None
         self._step: tuple[str, ...] = ()
+        self._driven: dict[tuple[str, ...], Car] = {}
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Overrides = ()) -> Car:
@@ -90,10 +84,8 @@ class Car(SteadyCar):
 
         Args:
             path: TOML file, or the name of a shipped car; default: the car of Bommer 2006.
-            overrides: {"damper.coulomb_friction": 93.75}, or texts "damper.coulomb_friction=93.75".
-
-        Raises:
-            ConfigurationError: the file, a name or a value is wrong.
+            overrides: {"damper.coulomb_friction": 93.75}, or texts "damper.coulomb_friction=93.75". A wrong file, name
+                or value raises a `ConfigurationError`.
         """
         file = None if path is None else mention(vehicle_file(Path(path)))
         changes = assignments(overrides)
@@ -109,9 +101,7 @@ class Car(SteadyCar):
         Changes add to earlier ones; the inertia of the body follows another mass or CoG (docs/vehicle-file.md).
         `overrides` lists all steps: `Car.load(file, variant.overrides)` loads the same car.
         Variants of laws and masses are fast: their matrices come from terms of this car, computed once.
-
-        Raises:
-            ConfigurationError: a name or a value is wrong.
+        A wrong name or value raises a `ConfigurationError`.
         """
         more = assignments(overrides)
         vehicle = self._variants.variant(more)
@@ -129,15 +119,19 @@ class Car(SteadyCar):
         Args:
             name: name of the point, for example "tunnel".
             at: coordinates in the design position [m], or the name of a hardpoint.
-            on: part that the point moves with.
-
-        Raises:
-            ConfigurationError: the car has an output of this name, or lacks the part or the hardpoint.
+            on: part that the point moves with; an unknown one raises a `ConfigurationError`.
         """
         if any(output.name == name for output in self.vehicle.composition.outputs):
             raise ConfigurationError(f"with_channel: the car already has an output {name!r}; choose another name")
         point = at if isinstance(at, str) else np.asarray(at).tolist()
         return self.with_({f"outputs.{name}.at": point, f"outputs.{name}.on": on})
+
+    def _of_drive(self, overrides: tuple[str, ...]) -> Car:
+        """Return the car of a drive; the last is stored with its matrices and second order for a further run."""
+        if not overrides:
+            return self
+        self._driven = driven = {overrides: self._driven.get(overrides) or self.with_(overrides)}
+        return driven[overrides]
 
     # Made by the first variant: a cycle, and the cars of a sweep must be freed without the garbage collector.
     @cached_property
@@ -169,12 +163,11 @@ class Car(SteadyCar):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Make a car of its parameters."""
-        self.__dict__ |= {"_checked": set(), "_stepped": None, **state}
+        self.__dict__ |= {"_checked": set(), "_stepped": None, "_driven": {}, **state}
 
     def save(self, file: Path | str, *, force: bool = False) -> Path:
         """Write the car as a vehicle file, from which `Car.load` makes the same car; see `vehicle.save_car`."""
-        path: Path = HANDED["save_car"](self, file, force=force)
-        return path
+        return Path(HANDED["save_car"](self, file, force=force))
 
     def show(self) -> CarData:
         """Return masses, loads, stiffnesses, frequencies, geometry and parameters; `print` shows them."""
@@ -193,10 +186,8 @@ class Car(SteadyCar):
 
         Args:
             path: whole path or its end, for example "front.damper.viscous" or "damper.viscous"; of one component
-                "tyre.stiffness.z"; "*.damper.viscous" for all parameters with this end, if they are equal.
-
-        Raises:
-            ConfigurationError: no parameter or several have this path, or it is a table.
+                "tyre.stiffness.z"; "*.damper.viscous" for all parameters with this end, if they are equal. No parameter
+                of the path, several, or a table raise a `ConfigurationError`.
         """
         from vehicle.runs.car.car_data import source_file
 
@@ -294,8 +285,7 @@ class Car(SteadyCar):
         """Check once that the car is stable and, for "mujoco", that its time step is small enough.
 
         Raises:
-            ConfigurationError: the car cannot be built, is unstable, or its time step is too large.
-            DataError, MissingPartError: the FMU of a controller cannot be used.
+            ConfigurationError, DataError, MissingPartError: car, time step or FMU of a controller cannot be used.
         """
         if engine in self._checked:
             return
@@ -347,10 +337,22 @@ class Car(SteadyCar):
 
         H(jw) of (s^2 M + s C + K) u = l, s = jw, with the row l of the force; its history plays no part.
 
-        Args:
-            force: name of a force, for example "crank_torque" of [force.crank_torque].
+        `force` is the name of a force, for example "crank_torque" of [force.crank_torque].
         """
         return force_frf(self, channels, frequency, is_stuck(damper), force)
+
+    @one_blas_thread()
+    def estimate(self, source: Road, channels: Sequence[str] = ()) -> RoadEstimate:
+        """Return comfort and tyre loads on all roads of a class without a run, by statistical linearisation.
+
+        Args:
+            source: class and speed, for example road("C", 80).
+            channels: further acceleration channels, for `RoadEstimate.rms`.
+
+        Raises:
+            ConfigurationError, SimulationError: a car or road that is not covered (docs/theory/estimate.md).
+        """
+        return road_estimate(self, source.under(self.vehicle, self.overrides), channels)
 
     @one_blas_thread()
     def run(
@@ -362,36 +364,38 @@ class Car(SteadyCar):
         channels: Sequence[str] | None = None,
         skip: float | None = None,
         forces: Mapping[str, GivenForce] | None = None,
+        stated_errors: bool = True,
     ) -> Run:
         """Simulate the car on a signal or a road; `run.engine_reason` is the reason for the choice of the engine.
 
         Args:
-            source: displacement of the plates: a `Signal`, a file, or the name of a shipped file, for example
-                "low.csv"; or a road, for example road("C", 80), on which the tyres roll.
+            source: displacement of the plates: a `Signal`, a file or the name of a shipped one, for example "low.csv";
+                or a road, for example road("C", 80), on which the tyres roll.
             engine: "mujoco"; "reduced", 3 times faster (sweeps tens), with all laws but linear geometry; "auto":
                 "reduced", and "mujoco" if the motion leaves the valid range.
             progress: called with the finished fraction (MuJoCo only).
-            channels: names of the recorded channels; default: all but those on request
-                (`vehicle.requested_channels`).
-            skip: time at the beginning that comfort and slip shares leave out [s]; default: 0, on a road at least 2,
-                until the last wheel has risen with it.
+            channels: names of the recorded channels; default: all but `vehicle.requested_channels`.
+            skip: excluded time at the beginning [s]; default: 0, on a road at least 2, until the last wheel has risen.
             forces: {"crank_torque": values}, in place of the history in the vehicle file: values at the times of the
                 signal, or a function of the times [s] that returns them [N or N m].
+            stated_errors: compute the errors from linear geometry; without them, the time is 0.4 of a first reduced
+                run and 0.7 of a further one, and the valid range is narrower (`vehicle.engines.reduced.validity`).
 
         Raises:
-            ConfigurationError: an unknown engine, channel or force, a value out of range, or an unstable car.
-            DataError: a file cannot be read, or its data are bad.
+            ConfigurationError, DataError: an unknown name, a value out of range, an unstable car, a bad file.
             SimulationError: the run failed.
         """
         if isinstance(source, Road):
-            signal = (drive := source.under(self.vehicle, self.overrides)).signal()
+            drive = evaluated_from(source.under(self.vehicle, self.overrides), skip)
+            signal = drive.signal()
             start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
-            car, named = self.with_(drive.overrides) if drive.overrides else self, replace(signal, source=drive.name)
-            run = car.run(named, engine, progress=progress, channels=channels, skip=start, forces=forces)
+            car, named = self._of_drive(tuple(drive.overrides)), replace(signal, source=drive.name)
+            run = car.run(named, engine, progress=progress, channels=channels, skip=start, forces=forces,
+                          stated_errors=stated_errors)  # fmt: skip
             return replace(run, road=drive.summary(signal))
         wheel = self.vehicle.shaker_wheel
         signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
         driven = with_histories(self, forces, signal.time) if forces else self
-        car, recording, reason = simulated_run(driven, signal, progress, engine, channels)
+        car, recording, reason = simulated_run(driven, signal, progress, engine, channels, stated=stated_errors)
         return with_range_notice(Run(car=car, signal=signal, recording=recording, engine_reason=reason, skip=start))

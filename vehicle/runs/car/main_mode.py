@@ -38,21 +38,21 @@ class MainMode:
 
 
 def plate_lines(
-    recording: Recording, wheels: Sequence[str], first: int, band: tuple[float, float], limit: int | None = None
+    recording: Recording, wheels: Sequence[str], evaluated: slice, band: tuple[float, float], limit: int | None = None
 ) -> Lines | None:
     """Return the lines of the periodogram of the plates in a band; None without plates.
 
     Args:
         recording: recording of the run.
         wheels: wheels of the plates, all of the car.
-        first: first evaluated sample.
+        evaluated: evaluated samples.
         band: frequencies [Hz].
         limit: about the maximum number of lines, evenly chosen; all by default.
     """
     names = [f"plate_{wheel}_displacement" for wheel in wheels]
     if not all(name in recording.channels for name in names):
         return None
-    plates = [recording.channels[name][first:] for name in names]
+    plates = [recording.channels[name][evaluated] for name in names]
     frequency = np.fft.rfftfreq(plates[0].size, recording.timestep)
     inside = np.flatnonzero((frequency >= band[0]) & (frequency <= band[1]))
     inside = inside[:: max(inside.size // limit, 1)] if limit else inside
@@ -105,7 +105,7 @@ def main_mode(run: Run, frequency: float | None = None) -> MainMode:
     damper = "sliding" if slip > WORKS else "stuck"
     modes = [mode for mode in car.modes(damper) if not mode.grows]
     system = car.matrices.system
-    lines = plate_lines(run.recording, system.inputs, run.evaluated.start, run.signal.band(FRF_BAND))
+    lines = plate_lines(run.recording, system.inputs, run.evaluated, run.signal.band(FRF_BAND))
     by_mode: dict[float, float] = {}
     if lines is not None and np.any(lines.plates) and CHANNEL in run.channels:
         shares = as_measured(run, lines, stuck=damper == "stuck")

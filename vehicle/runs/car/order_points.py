@@ -277,7 +277,9 @@ def _joined(results: Sequence[OrderPoints], run: Run, parts: tuple[tuple[NamedMo
 
 def _run(car: Car, surface: str, speed: float, duration: float, engine: str, names: Sequence[str]) -> Run:
     channels = [*names, *(f"damper_{wheel}_velocity" for wheel in car.vehicle.damped_wheels)]
-    return car.run(Road(surface, speed, duration=duration), engine=engine, channels=channels)
+    # Only "auto" needs the errors, for its choice.
+    stated = engine == "auto"
+    return car.run(Road(surface, speed, duration=duration), engine=engine, channels=channels, stated_errors=stated)
 
 
 def _point(run: Run, point: float, channel: str, angle: str | None, orders: Sequence[float]) -> OrderPoints:

@@ -23,7 +23,9 @@ from vehicle.handed_down import HANDED
 from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import AXES
+from vehicle.runs.car.run_twin import twin_accelerations
 from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.order_cut import order_cut
 from vehicle.signals.analysis.order_lines import order_lines
@@ -67,8 +69,7 @@ class Run:
 
     def __repr__(self) -> str:
         """One line."""
-        engine = self.recording.statistics.engine
-        source = Path(self.signal.source).name
+        engine, source = self.recording.statistics.engine, Path(self.signal.source).name
         short = source if len(source) < 50 else f"{source[:47]}..."
         return f"Run({short}, {self.signal.duration:g} s, {engine}, {self.car!r})"
 
@@ -133,7 +134,7 @@ class Run:
     @property
     def evaluated(self) -> slice:
         """Samples of the evaluated span, from `skip` to the end."""
-        return slice(round(self.skip / self.recording.timestep), None)
+        return evaluated_span(self.recording.time.size, self.recording.timestep, self.skip)
 
     @property
     def wheel(self) -> str:
@@ -192,20 +193,16 @@ class Run:
         Args:
             point: output point of the car, for example "seat_rail".
         """
-
-        def at(name: str) -> Vector:
-            return np.stack([self.recording[f"{name}_acc_{axis}"] for axis in AXES])
-
         recorded = all(f"seat_acc_{axis}" in self.recording.channels for axis in AXES)
-        seated = point == "seat_rail" and self.car.vehicle.seated and recorded
+        points = (point, "seat") if point == "seat_rail" and self.car.vehicle.seated and recorded else (point,)
         return run_comfort(
             self.recording.timestep,
-            at(point),
-            at("seat") if seated else None,
+            *(np.stack([self.recording[f"{name}_acc_{axis}"] for axis in AXES]) for name in points),
             skip=self.skip,
             band=self.signal.band(COMFORT_BAND),
             point=point.replace("_", " "),
             contact="steering_wheel" if point == RIM else "seat",
+            twin=twin_accelerations(self.car, self.signal, self.recording, self.skip, points),
         )
 
     def figure(self, name: str) -> float:

@@ -15,6 +15,9 @@ from vehicle.names import ENGINES
 from vehicle.runs.car.run_up_notice import run_up_notice
 from vehicle.signals.excitation.signal import Signal
 
+NOT_COMPUTED = "errors from the linear geometry of the reduced engine: not computed"
+"""Notice on a run without stated errors."""
+
 
 def simulated_run(
     car: Any,
@@ -29,7 +32,7 @@ def simulated_run(
 
     Args:
         progress, engine, channels: as in `Car.run`.
-        stated: state the errors of the reduced engine, whose second order of the car takes a second once.
+        stated: state the errors of the reduced engine, see `Car.run`.
 
     Returns:
         The simulated car, with its time step if MuJoCo ran; the recording; the reason for the choice of the engine.
@@ -74,6 +77,7 @@ def simulated_run(
         require_finite(recording)
         recording = _with_forces(recording, car, names, shown)
         if engine == "reduced" or recording.statistics.within_validity:
+            recording = recording if stated else with_notices(recording, [NOT_COMPUTED])
             if engine == "auto":
                 reason = "the motion stayed in the range where the reduced engine is valid"
             return car, recording, reason

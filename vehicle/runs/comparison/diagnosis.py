@@ -139,7 +139,7 @@ def _beside_car(measurement: Measurement, car: Car, choice: Choice, inverted: Co
         return findings
     asked = replace(without_delays, channels=measured.mapped)
     signal = plate_signal(None, car, measurement.path, measured, asked, inverted, None)
-    run = car.run(signal, engine="reduced", channels=tuple(record.channels))
+    run = car.run(signal, engine="reduced", channels=tuple(record.channels), stated_errors=False)
     simulated = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     return [*findings, *beside_run(measured, record, simulated, record.time - record.time[0]).findings]
 

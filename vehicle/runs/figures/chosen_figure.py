@@ -71,7 +71,9 @@ class ChosenFigure(Details):
         if self.axis and self.axis not in AXES:
             raise ConfigurationError(f"{name}.axis: must be x, y or z, not {self.axis!r}")
         if self.order is not None and not 0.0 < self.order <= HIGHEST_ORDER:
-            raise ConfigurationError(f"{name}.order: found {self.order:g}, must be above 0 to {HIGHEST_ORDER:g}")
+            raise ConfigurationError(
+                f"{name}.order: found {self.order:g}, must be above 0 and at most {HIGHEST_ORDER:g}"
+            )
 
     @property
     def figure(self) -> Figure:

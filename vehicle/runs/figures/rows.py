@@ -39,11 +39,12 @@ def recorded(names: Sequence[str], weighting: str, runs: Runs) -> Vector:
     if not weighting:
         return runs.stacked(*names)[:, :, runs.evaluated]
     # The filter runs over the whole record, so that it has settled where the evaluation begins.
+    first, end = runs.evaluated.start, runs.evaluated.stop
     weighted = [
-        [weighted_record(runs.timestep, history, axis_weighting(weighting, name)) for history in runs[name]]
+        [weighted_record(runs.timestep, history[:end], axis_weighting(weighting, name)) for history in runs[name]]
         for name in names
     ]
-    return np.stack(weighted, axis=1)[:, :, runs.evaluated]
+    return np.stack(weighted, axis=1)[:, :, first:]
 
 
 def wheels_of(details: Details, car_wheels: Sequence[str], part: str = "tyre") -> tuple[str, ...]:

@@ -45,12 +45,13 @@ def _lines(details: Details, runs: Runs) -> list[OrderLines]:
 
 
 def _order(_: Vector, details: Details, runs: Runs) -> Values:
-    lines = _lines(details, runs)
-    amplitude, error = (
-        np.array([float(values[0, 0]) for values in each])
-        for each in ([abs(line.amplitude) for line in lines], [line.error for line in lines])
-    )
-    return Values(amplitude, error)
+    amplitudes, errors = [], []
+    for line in _lines(details, runs):
+        amplitude = abs(line.amplitude[:, 0])
+        largest = np.argmax(amplitude)
+        amplitudes.append(amplitude[largest])
+        errors.append(line.error[largest, 0])
+    return Values(np.array(amplitudes), np.array(errors))
 
 
 def _order_frequency(_: Vector, details: Details, runs: Runs) -> Values:
@@ -94,7 +95,7 @@ def _channels(details: Details, _: object) -> tuple[str, ...]:
 
 ORDER_FIGURES = {
     "order": Figure(
-        words="order amplitude", meaning="amplitude of a channel at an order of crank or wheel [U]",
+        words="order amplitude", meaning="amplitude at an order of crank or wheel, of several channels the largest [U]",
         reads=unread(_channels), reduces=Reduction(of=_order), needs=("order", "channels"), takes=("angle",),
         companion=ORDER_FREQUENCY, alone=True, certain=True, require=_require_angle, on_input=_constant_speed,
     ),

@@ -9,19 +9,22 @@ from vehicle.engines.simulation.judgement import require_samples
 from vehicle.errors import ConfigurationError
 from vehicle.leftovers import say
 from vehicle.machine import free_memory, physical_memory
+from vehicle.mapped_table import scratch_folder, size_in_memory
 
 BYTES = {"npz": 8.0, "h5": 8.0, "mf4": 8.0, "mat": 8.0, "uff": 8.0, "rpc": 4.0, "csv": 13.0}
 """Size of a sample of a channel in a file [byte]; csv: nine digits, sign, point and comma."""
 
-BESIDE, OF_SAMPLE = 0.3e9, 280.0
-"""Memory of a run in addition to its recording [byte]: program and model; for each sample plates and an evaluation.
+BESIDE, OF_SAMPLE = 0.45e9, 200.0
+"""Memory of a run with its files [byte]: program, model and short transforms; for each sample plates and an evaluation.
 
-Measured peaks of an hour at 1 kHz with the reduced engine [GB], and `run_size`: 44 channels 2.5 and 2.6; 61 channels
-3.1 and 3.1.
+Largest own memory of runs of `focus_road` at 1 kHz with all 61 channels, in npz and h5, to which libraries and pages of
+the file add 0.1 or more, and `run_memory` [GB]: 300 s 0.31 and 0.51; 600 s 0.42 and 0.57; 900 s 0.52 and 0.63; 1200 s
+0.48 and 0.69; an hour with pictures and report 1.24 and 1.17; MuJoCo, 300 s 0.34 and 0.51. From 2^20 samples on,
+transforms are made in blocks.
 """
 
-OF_SAMPLE_IN_MUJOCO = 700.0
-"""Least memory of a run in MuJoCo for each sample [byte], with energies; 653 measured with 46 channels, 699 with 3."""
+RECORDED = 64
+"""Channels that MuJoCo records at least: all of the car, whichever are kept."""
 
 STATED_FROM = 1e9
 """Minimum size that is stated before the run [byte]."""
@@ -29,14 +32,14 @@ STATED_FROM = 1e9
 BASE = 0.17e9
 """Memory of a process with its program and its car [byte]; 0.14e9 to 0.19e9 measured."""
 
-PLATES, PLATES_OF_MUJOCO = 220.0, 450.0
-"""Memory of a run for each sample, in addition to its channels [byte]: plates, spectra; in MuJoCo also energies."""
+PLATES = 220.0
+"""Memory of a batch for each sample, in addition to its channels [byte]: plates, spectra."""
 
 CHANNEL = 22.0
 """Memory of a sample of a channel of a car, with its evaluation [byte].
 
 Measured peaks, 5 channels at 1 kHz [GB], and `batch_memory`: 60 s of 8 cars 0.19 and 0.24; 60 s of 24 cars 0.30 and
-0.34; 600 s of 2 cars 0.40 and 0.43; 3600 s of one car 1.15 and 1.36; MuJoCo, 300 s 0.33 and 0.34.
+0.34; 600 s of 2 cars 0.40 and 0.43; 3600 s of one car 1.15 and 1.36.
 """
 
 _said: set[tuple[str, float, float]] = set()
@@ -48,9 +51,7 @@ def run_size(
 ) -> str:
     """Return a message on the memory and the disk of a run; empty below `STATED_FROM`.
 
-    memory = n max(8 c + `OF_SAMPLE`, `OF_SAMPLE_IN_MUJOCO`) + `BESIDE`, disk = n c (sum of `BYTES` of the formats)
-
-    n samples of c channels; the maximum in MuJoCo only
+    memory: see `run_memory`; disk = n c (sum of `BYTES` of the formats), and the recording if it is in a file there
 
     Args:
         folder: folder of the run, which need not exist.
@@ -65,11 +66,14 @@ def run_size(
     """
     samples = duration * rate
     require_samples(samples, channels)
+    disk, recording = samples * channels * sum(BYTES[form] for form in formats), 8.0 * samples * channels
+    if _existing(folder).stat().st_dev == scratch_folder().stat().st_dev:
+        disk += recording - size_in_memory(recording)
     return stated_size(
         folder,
         f"{channels} channels of {duration:g} s",
-        samples * max(8.0 * channels + OF_SAMPLE, 0.0 if reduced else OF_SAMPLE_IN_MUJOCO) + BESIDE,
-        samples * channels * sum(BYTES[form] for form in formats),
+        run_memory(samples, channels, reduced=reduced),
+        disk,
         "for less, name the channels (--channels), or choose a lower solver.record_rate",
     )
 
@@ -89,7 +93,7 @@ def stated_size(folder: Path, subject: str, memory: float, disk: float, remedy: 
     Raises:
         ConfigurationError: more than the memory of the machine, or than the free disk.
     """
-    there = next(parent for parent in (folder.absolute(), *folder.absolute().parents) if parent.is_dir())
+    there = _existing(folder)
     for name, needed, limit, where, bound in (
         ("", memory, physical_memory(), "of memory", "the memory of this machine,"),
         (f"{folder}: ", disk, float(shutil.disk_usage(there).free), "on the disk", "the free"),
@@ -116,10 +120,29 @@ def say_size(folder: Path, subject: str, memory: float, disk: float, remedy: str
         say(text)
 
 
+def _existing(folder: Path) -> Path:
+    """Return the nearest folder that exists, the folder itself or above."""
+    return next(parent for parent in (folder.absolute(), *folder.absolute().parents) if parent.is_dir())
+
+
+def run_memory(samples: float, channels: int, *, reduced: bool) -> float:
+    """Return the memory of a run with its files [byte].
+
+    memory = `BESIDE` + `OF_SAMPLE` n + 8 n c, without the last term if the recording is in a file
+
+    Args:
+        samples: number n of samples.
+        channels: recorded channels c; in MuJoCo at least `RECORDED`.
+        reduced: False if the car may run with MuJoCo.
+    """
+    recording = 8.0 * samples * (channels if reduced else max(channels, RECORDED))
+    return BESIDE + OF_SAMPLE * samples + size_in_memory(recording)
+
+
 def batch_memory(samples: float, channels: int, *, cars: int = 1, reduced: bool = True) -> float:
     """Return the memory of a process that simulates and evaluates cars together [byte].
 
-    memory = `BASE` + n (`PLATES` + `CHANNEL` channels cars), with n samples of each channel
+    memory = `BASE` + n (`PLATES` + `CHANNEL` channels cars), with n samples of each channel; in MuJoCo `run_memory`
 
     Args:
         samples: number n of samples.
@@ -127,4 +150,5 @@ def batch_memory(samples: float, channels: int, *, cars: int = 1, reduced: bool 
         cars: cars of a batch; MuJoCo runs each by itself.
         reduced: False if a car may run with MuJoCo.
     """
-    return BASE + samples * ((PLATES if reduced else PLATES_OF_MUJOCO) + CHANNEL * channels * cars)
+    batch = BASE + samples * (PLATES + CHANNEL * channels * cars)
+    return batch if reduced else max(batch, run_memory(samples, channels, reduced=False))

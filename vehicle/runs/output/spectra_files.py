@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
+from vehicle.mapped_table import release
 from vehicle.names import point_words
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.spectra import power_spectral_density
@@ -69,10 +70,10 @@ def third_octaves_text(runs: Mapping[str, RecordSpectra], caption: str) -> str:
 def write_densities(path: Path, run: Run, frame: str) -> None:
     """Write one-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
     window, recording = min(PSD_WINDOW, run.signal.duration - run.skip), run.recording
-    each = [
-        power_spectral_density(recording.timestep, values[run.evaluated], window_s=window)
-        for values in recording.channels.values()
-    ]
+    each = []
+    for values in recording.channels.values():
+        each.append(power_spectral_density(recording.timestep, values[run.evaluated], window_s=window))
+        release(values)
     first = each[0]
     inside = first.frequency <= PSD_HIGHEST
     cells = ["frequency [Hz]", *(f"{name} [({recording.units[name]})^2/Hz]" for name in recording.channels)]

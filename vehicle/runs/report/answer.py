@@ -348,15 +348,18 @@ def _numbers(run: FinishedRun) -> dict[str, tuple[float, str, bool]]:
     seat = run.summary.seat_value
     if seat is not None:
         numbers["SEAT value"] = seat.rms, "", True
-    first = round(run.skip / run.recording.timestep)
     wheels = run.car.vehicle.wheels
     for wheel in wheels:
         force = run.recording.channels.get(f"tyre_{wheel}_force_z")
         if force is not None:
-            variation = float(np.std(force[first:]))
+            variation = float(np.std(force[run.evaluated]))
             numbers[f"tyre load {side_of(wheel, wheels)}, RMS of its variation"] = variation, "N", True
     for wheel in run.summary.slip_shares:
         force = run.recording.channels.get(f"damper_{wheel}_force")
         if force is not None:
-            numbers[f"damper force {side_of(wheel, wheels)}, largest"] = float(np.abs(force[first:]).max()), "N", True
+            numbers[f"damper force {side_of(wheel, wheels)}, largest"] = (
+                float(np.abs(force[run.evaluated]).max()),
+                "N",
+                True,
+            )
     return numbers

@@ -56,9 +56,8 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
         The mode; None if no plate is recorded, or no mode that can cause the band (`MainBand.explained_by`) has at
         least `RESONANT` of it: a mode outside it only passes the vibration on.
     """
-    first = round(run.skip / run.recording.timestep)
     system = run.car.matrices.system
-    lines = plate_lines(run.recording, system.inputs, first, (band.low, band.high), LINES)
+    lines = plate_lines(run.recording, system.inputs, run.evaluated, (band.low, band.high), LINES)
     if lines is None:
         return None
     stuck = damper_state(run) == "stuck"

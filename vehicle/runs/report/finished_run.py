@@ -14,6 +14,7 @@ from vehicle.names import side_of, wheel_words
 from vehicle.runs.car import Car
 from vehicle.runs.output.saved_run import file_of_run, read_recording
 from vehicle.runs.targets.verdict import RatedRun
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.response_name import PLATE, ResponseName
@@ -72,6 +73,11 @@ class FinishedRun(RatedRun):
     def friction(self) -> bool:
         """True if a damper has friction, so that it can stick and slip."""
         return any(damper.law.static_friction > 0.0 for damper in self.car.vehicle.composition.dampers)
+
+    @property
+    def evaluated(self) -> slice:
+        """Evaluated samples, as in `Run`."""
+        return evaluated_span(self.recording.time.size, self.recording.timestep, self.skip)
 
     @property
     def span(self) -> str:

@@ -49,8 +49,7 @@ def weighted_bands(run: FinishedRun) -> dict[str, ChannelSpectrum]:
     names = {f"{POINT}_acc_{axis}": axis for axis in AXES}
     if not all(name in run.recording.channels for name in names):
         return {}
-    first = round(run.skip / run.recording.timestep)
-    histories = {name: run.recording.channels[name][first:] for name in names}
+    histories = {name: run.recording.channels[name][run.evaluated] for name in names}
     spectra = vibration_spectra(run.recording.timestep, histories, run.recording.units)
     return {names[spectrum.name]: spectrum for spectrum in spectra if spectrum.weighting}
 

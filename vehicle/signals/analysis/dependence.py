@@ -9,7 +9,8 @@ import numpy as np
 import scipy
 
 from vehicle.errors import DataError
-from vehicle.signals.analysis.samples import Vector
+from vehicle.signals.analysis.record_lines import RecordLines, is_long
+from vehicle.signals.analysis.samples import Complex, Vector
 
 DEPENDENT = 0.98
 """Minimum coherence of two time-aligned inputs that count as copies: separated responses would have more than seven
@@ -69,19 +70,20 @@ def copy_of(time_step: float, first: Vector, second: Vector, band: tuple[float, 
     length = int(scipy.fft.next_fast_len(2 * count, real=True))  # a prime factor of the count takes much memory
     line = 1.0 / (length * time_step)
     window = slice(int(band[0] / line), int(band[1] / line) + 1)
-    x, y = (np.fft.rfft(signal - signal.mean(), length) for signal in (first, second))
-    cross = np.zeros_like(x)
-    size = np.abs(x * y)[window]
+    # Copies of the lines of the band, so that the others are freed.
+    x, y = (np.fft.rfft(signal - signal.mean(), length)[window].copy() for signal in (first, second))
+    cross = np.zeros(window.stop, dtype=np.complex128)
+    size = np.abs(x * y)
     driven = size > DRIVEN * size.max()
     # Phase transform: every driven line has the weight 1, so that the correlation is a sharp peak at the delay.
-    cross[window][driven] = (y * x.conj())[window][driven] / size[driven]
+    cross[window][driven] = (y * x.conj())[driven] / size[driven]
     shift = int(np.argmax(np.abs(np.fft.irfft(cross, length))))
     # The second half of a circular correlation contains the negative delays.
     shift -= length if shift > length // 2 else 0
     shift = shift if abs(shift) < count // 2 else 0
     early, late = (first[: count - shift], second[shift:]) if shift >= 0 else (first[-shift:], second[:shift])
     taper = np.hanning(early.size)
-    x, y = (np.fft.rfft((signal - signal.mean()) * taper) for signal in (early, late))
+    x, y = (_spectrum((signal - signal.mean()) * taper) for signal in (early, late))
     line = 1.0 / (early.size * time_step)
     mean = np.ones(2 * SIDE_LINES + 1)
     # Sums over 17 lines: without averaging the coherence would be 1.
@@ -97,6 +99,14 @@ def copy_of(time_step: float, first: Vector, second: Vector, band: tuple[float, 
     return Copy(coherence=float(np.median(coherence)), delay=shift * time_step, factor=float(factor))
 
 
+def _spectrum(samples: Vector) -> Complex:
+    """Return all lines of a record; of a long one in blocks, which take less memory than a transform of all samples."""
+    lines = samples.size // 2 + 1
+    return (
+        RecordLines(samples.size, 0, lines).of(samples.__getitem__) if is_long(samples.size) else np.fft.rfft(samples)
+    )
+
+
 def refuse_copies(time_step: float, inputs: Vector, names: Sequence[str], band: tuple[float, float]) -> None:
     """Raise an error if an input is a copy of another."""
     for i, j in combinations(range(len(names)), 2):
@@ -106,13 +116,13 @@ def refuse_copies(time_step: float, inputs: Vector, names: Sequence[str], band: 
 
 
 def common_motions(
-    time_step: float, inputs: Vector, names: Sequence[str], band: tuple[float, float]
+    time_step: float, inputs: Sequence[Vector] | Vector, names: Sequence[str], band: tuple[float, float]
 ) -> list[dict[int, float]]:
     """Group the inputs that are scaled copies without a delay; the groups are independent motions.
 
     Args:
         time_step: sampling interval [s].
-        inputs: samples, shape (p, n).
+        inputs: samples, shape (p, n), or a sequence of (n,).
         names: names of the inputs, for messages.
         band: evaluated frequencies (low, high) [Hz].
 

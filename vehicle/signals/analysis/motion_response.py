@@ -82,7 +82,7 @@ def motion_responses(
     if motions is None:
         groups = [{0: 1.0}]
         if len(keys) > 1:
-            groups = common_motions(time_step, np.array([inputs[key] for key in keys]), labels, band)
+            groups = common_motions(time_step, [inputs[key] for key in keys], labels, band)
         motions = [{keys[index]: factor for index, factor in group.items()} for group in groups]
     first = [next(iter(motion)) for motion in motions]
     driven, driven_labels = np.array([inputs[key] for key in first]), [labels[keys.index(key)] for key in first]

@@ -9,6 +9,7 @@ from vehicle.arrays import Complex as Complex
 from vehicle.arrays import Mask
 from vehicle.arrays import Vector as Vector
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.mapped_table import release
 
 SAMPLES_PER_PERIOD = 2.5
 """Minimum sampling rate over the highest evaluated frequency; above Nyquist (2.0), because of the anti-alias filter."""
@@ -43,6 +44,7 @@ def checked_signals(label: str, signals: ArrayLike) -> Vector:
             f"{label}: found {array[row, column]} at sample {column} of signal {row} "
             f"({int(bad.sum())} values are not finite); correct or cut the record"
         )
+    release(array)
     return array
 
 
@@ -96,8 +98,9 @@ def lines_in_band(frequency: Vector, band: tuple[float, float]) -> Mask:
 
 def is_constant(signals: Vector) -> Mask:
     """Return a mask of the constant signals among (k, n): peak-to-peak value within the rounding of their magnitude."""
-    size = np.abs(signals).max(axis=-1)
-    return np.asarray(np.ptp(signals, axis=-1) <= 8.0 * np.finfo(np.float64).eps * size)
+    size, extent = np.abs(signals).max(axis=-1), np.ptp(signals, axis=-1)
+    release(signals)
+    return np.asarray(extent <= 8.0 * np.finfo(np.float64).eps * size)
 
 
 def refuse_constant(inputs: Vector, names: Sequence[str]) -> None:

@@ -1,10 +1,8 @@
 """One-sided power spectral densities and the RMS in a band; sum(S df) equals the mean square (Parseval)."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from vehicle.errors import DataError
@@ -59,17 +57,22 @@ def power_spectral_density(
     step = checked_time_step(time_step)
     array = checked_signals("signals", signals)
     cut = cut_into_segments(array.shape[1], step, window_s=window_s, overlap=overlap, minimum_averages=minimum_averages)
-    density: Any = 0.0
+    power = np.zeros((len(array), cut.length // 2 + 1))
     for first in range(0, cut.count, SEGMENTS_AT_ONCE):
         count = min(SEGMENTS_AT_ONCE, cut.count - first)
         group = array[:, first * cut.step : (first + count - 1) * cut.step + cut.length]
-        frequency, group_density = scipy.signal.welch(
-            group, 1.0 / step, window=cut.window, nperseg=cut.length, noverlap=cut.overlap, detrend="constant"
-        )
-        # Mean over all segments, from the means of batches.
-        density = density + count / cut.count * group_density
+        segments = np.lib.stride_tricks.sliding_window_view(group, cut.length, axis=1)[:, :: cut.step]
+        # Not by `scipy.signal`, whose import takes longer than the densities of a run.
+        spectra = np.fft.rfft((segments - segments.mean(axis=2, keepdims=True)) * cut.window, axis=2)
+        power += np.sum(spectra.real**2 + spectra.imag**2, axis=1)
+    # S = c |X|^2 dt/sum(w^2), mean over the segments; c = 2 except at 0 Hz and at Nyquist.
+    power[:, 1 : (cut.length + 1) // 2] *= 2.0
+    frequency = np.fft.rfftfreq(cut.length, step).astype(np.float64)
     return PowerSpectralDensity(
-        frequency=frequency, density=density, resolution_hz=float(frequency[1]), averages=cut.averages
+        frequency=frequency,
+        density=power * (step / (cut.count * np.sum(cut.window**2))),
+        resolution_hz=float(frequency[1]),
+        averages=cut.averages,
     )
 
 

@@ -7,8 +7,14 @@ The height over the wavenumber lines n_k = k / P of a length P is, with a mean a
     z(x) = sum over k of A_k (sqrt((1 + g_k) / 2) cos(2 pi n_k x + phi_k)
                               +- sqrt((1 - g_k) / 2) cos(2 pi n_k x + psi_k))
 
-right with +, left with -; A_k^2 / 2 = G(n_k) / P; g is the normalised cross spectrum. The power of both tracks is
-exactly that of the class on every line; only the phases are random.
+right with +, left with -; A_k^2 / 2 = G(n_k) / P; g is the normalised cross spectrum. Only the phases are random. The
+power of a track on a line, relative to G, is 1 +- sqrt(1 - g^2) cos(psi - phi), from 0 to 2; the mean of both tracks
+and the real part of their cross spectrum, g, are exact. With phases in quadruples,
+
+    psi_k = phi_k + theta_q + {0, pi, pi, 0},    theta_q a random phase for four lines
+
+the terms with psi - phi add to zero over the four lines: then each track has the power of the class and the cross
+spectrum g exactly, except for the second difference of sqrt(1 - g^2) within the four lines.
 """
 
 from __future__ import annotations
@@ -23,6 +29,7 @@ import scipy
 from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.machine import physical_memory
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.road_level import REFERENCE
 from vehicle.signals.excitation.band import positive, samples_of
 from vehicle.signals.excitation.rest import half_cosine_at, half_cosine_rate_at
@@ -95,6 +102,7 @@ class IsoRoad:
         highest: maximum wavenumber [cycles/m].
         coherence: g of the tracks [-]; None for an isotropic surface, 1 for equal and 0 for independent tracks.
         patch: length a of the contact patch [m], over which the tyre averages the road: factor sinc(n a).
+        quadruples: phases of mean and difference of the tracks in quadruples of lines; False: all independent.
         envelope: cams of the tyre, in place of the average over the contact patch.
     """
 
@@ -105,6 +113,7 @@ class IsoRoad:
     highest: float = HIGHEST
     coherence: float | None = None
     patch: float = 0.0
+    quadruples: bool = True
     envelope: TyreEnvelope | None = None
 
     def __post_init__(self) -> None:
@@ -159,6 +168,10 @@ class IsoRoad:
         # One phase pair for each line of the road, so that a longer road of the same seed has the same phases; (2,
         # lines).
         phase = 2.0 * np.pi * np.random.Generator(np.random.PCG64(self.seed)).random((int(lines[-1]), 2))[lines - 1].T
+        if self.quadruples:
+            # psi = phi + theta_q + {0, pi, pi, 0}: the signs + - - + cancel a linear change within the four, too.
+            theta = np.repeat(phase[1, ::4], 4)[: lines.size]
+            phase[1] = phase[0] + theta + np.pi * np.resize([0.0, 1.0, 1.0, 0.0], lines.size)
         sign = 1.0 if side == "right" else -1.0
         # z = sqrt((1 + g)/2) e^(i phi) +- sqrt((1 - g)/2) e^(i psi): both tracks have power 1 and the cross spectrum
         # g.
@@ -200,7 +213,13 @@ def contact_words(patch: float, envelope: TyreEnvelope | None) -> str:
 
 
 def drive(
-    road: Road, *, speed: float, wheels: Mapping[str, tuple[float, Side]], duration: float, rate: float = 1000.0
+    road: Road,
+    *,
+    speed: float,
+    wheels: Mapping[str, tuple[float, Side]],
+    duration: float,
+    rate: float = 1000.0,
+    begin: float | None = None,
 ) -> Signal:
     """Generate the plate displacements of a car that drives over a road: z(t) = w(V t - d) z(V t - d).
 
@@ -213,6 +232,9 @@ def drive(
         wheels: name of each wheel to its distance d behind the foremost wheel [m], at least 0, and its track.
         duration: length of the record [s].
         rate: sampling rate [Hz].
+        begin: start of the evaluated span [s]; a road that repeats then does so after this span, so that the lead-in
+            is the end of the same period, and the span holds every wave of the road whole. None: no wheel reaches
+            the repetition.
 
     Returns:
         Signal with duration * rate + 1 samples for all wheels.
@@ -230,22 +252,26 @@ def drive(
     if not wheels or min(behind) < 0.0 or not np.isfinite(behind).all():
         raise ConfigurationError(f"distances of wheels {behind} m: must be 0 at the foremost axle, above 0 behind it")
     # Longer than the record by the delay of the last wheel: no wheel reaches the repetition of the road.
-    period = steps + 1 + (int(np.ceil(max(behind) / speed * rate)) if road.repeats else 0)
+    period, repeats = steps + 1 + (int(np.ceil(max(behind) / speed * rate)) if road.repeats else 0), ""
+    if road.repeats and begin is not None:
+        period = steps - evaluated_span(steps + 1, 1.0 / rate, begin).start
+        repeats = f", repeats after {period / rate:g} s"
     step, displacement, slopes, profile = speed / rate, {}, {}, {}
     for wheel, (distance, side) in wheels.items():
-        # 0.8 of the Nyquist frequency, as for every generated signal.
+        # 0.8 of the Nyquist frequency, as for every generated signal. Heights modulo the period, or cut to the record.
         height, slope = road.contact(-distance, step, period, side, 0.4 / step)
-        z, delayed_time = height[: steps + 1], np.arange(steps + 1) / rate - distance / speed
+        z, delayed_time = np.resize(height, steps + 1), np.arange(steps + 1) / rate - distance / speed
         rise, rise_rate = half_cosine_at(delayed_time, RISE_S), half_cosine_rate_at(delayed_time, RISE_S)
         displacement[wheel] = z * rise + 0.0  # adding 0.0 avoids -0.0 in files
-        profile[wheel] = road.bare.contact(-distance, step, period, side, 0.4 / step)[0][: steps + 1] * rise + 0.0
+        bare = road.bare.contact(-distance, step, period, side, 0.4 / step)[0]
+        profile[wheel] = np.resize(bare, steps + 1) * rise + 0.0
         if slope is not None:
             # d(w z)/dt = V tan(beta) w + w' z.
-            slopes[wheel] = speed * slope[: steps + 1] * rise + rise_rate * z + 0.0
+            slopes[wheel] = speed * np.resize(slope, steps + 1) * rise + rise_rate * z + 0.0
     return Signal(
         time=uniform_time(samples=steps + 1, timestep=1.0 / rate),
         displacement=displacement,
-        source=f"{road.words}; {speed * 3.6:.6g} km/h, {RISE_S:g} s rise from rest",
+        source=f"{road.words}; {speed * 3.6:.6g} km/h, {RISE_S:g} s rise from rest{repeats}",
         slope_velocity=slopes,
         profile=profile,
     )

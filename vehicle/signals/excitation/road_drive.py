@@ -4,7 +4,7 @@ import math
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import get_args
+from typing import TypeVar, get_args
 
 import numpy as np
 
@@ -51,6 +51,10 @@ AROUND, SHOWN = 0.3, 10.0
 ROUGHNESS_STEP, LEVEL_WINDOW = 0.05, 100.0
 """Distance of the points for the roughness index [m], 5 to its average over 250 mm; windows of a road's density [m]."""
 
+SHORTEST_SPAN_S = 6.0
+"""Minimum evaluated span of a road that repeats [s]: at 50 km/h four lines of a span of 3 s take 1.3 Hz, over which the
+response of a car changes, and the scatter is twice as large; class A at 50 km/h needs 16 s."""
+
 AFTER_RISE_S = 0.5
 """Minimum time [s] from the end of the rise at the last wheel to the default of --skip."""
 
@@ -67,6 +71,9 @@ class RoadDrive:
         duration: length [s]; by default 60 s of a class, a whole profile, or an obstacle and 3 s after it.
         rate: sampling rate [Hz].
         seed: seed of a class.
+        period: "evaluated" for a class that repeats after the evaluated span, with phases of the tracks in quadruples;
+            "record" for one with independent phases that repeats nowhere in the drive; None for "evaluated".
+        start: start of the evaluation [s], see `evaluated_from`; None for the default.
         coherence: coherence of the tracks of a class; None for an isotropic surface.
         tagged: the name contains the seed, for several seeds of one road.
         patch: length of the contact patch [m] over which a tyre averages the road; 0 for a point.
@@ -91,6 +98,8 @@ class RoadDrive:
     lifting: tuple[str, ...] = ()
     contact: str | None = None
     radius: float = RADIUS
+    period: str | None = None
+    start: float | None = None
 
     def __post_init__(self) -> None:
         stands = self.road == LEVEL and self.speed == 0.0
@@ -100,6 +109,8 @@ class RoadDrive:
         if isinstance(self.road, Path) or on_obstacle or self.road == LEVEL:
             if self.coherence is not None:
                 raise ConfigurationError("--coherence: works only with a road class; leave it out")
+            if self.period is not None:
+                raise ConfigurationError("--period: works only with a road class; leave it out")
             if on_obstacle:
                 Obstacle.parse(str(self.road))
         elif self.road not in CLASSES:
@@ -108,9 +119,10 @@ class RoadDrive:
                 f"measured profile, an obstacle, for example cleat:20x50, or {LEVEL}"
             )
         check_patch(self.patch)
-        contacts = SETTINGS["contact"]["option"]["choices"]
-        if self.contact is not None and self.contact not in contacts:
-            raise ConfigurationError(f"contact {self.contact!r}: must be one of {', '.join(contacts)}")
+        for name, value in (("contact", self.contact), ("period", self.period)):
+            choices = SETTINGS[name]["option"]["choices"]
+            if value is not None and value not in choices:
+                raise ConfigurationError(f"{name} {value!r}: must be one of {', '.join(choices)}")
         _ = self.envelope
 
     @property
@@ -145,7 +157,9 @@ class RoadDrive:
 
     @property
     def skip(self) -> float:
-        """Default start of the evaluation [s]: 2 s, or 0.5 s after the rise of the last wheel, whichever is later."""
+        """Start of the evaluation [s]; default: 2 s, or 0.5 s after the rise of the last wheel, whichever is later."""
+        if self.start is not None:
+            return self.start
         if self.road == LEVEL:
             return SKIP_S
         last = max(behind for _, behind, _ in self.wheels) / (self.speed / 3.6)
@@ -162,17 +176,44 @@ class RoadDrive:
         """Return True for a class or a profile, False for an obstacle or a level road; see `Signal`."""
         return self.road != LEVEL and self.obstacle is None
 
+    @property
+    def repeats(self) -> bool:
+        """True for a class that repeats after the evaluated span."""
+        return self.road in CLASSES and self.period != "record"
+
+    @property
+    def span(self) -> float | None:
+        """Length of the evaluated span after which the road repeats [s]; None for a road that does not repeat.
+
+        A drive that ends before the evaluation begins has no such span.
+        """
+        span = (USUAL_DURATION if self.duration is None else self.duration) - self.skip
+        return span if self.repeats and self.skip >= 0.0 and span > 0.0 else None
+
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """Messages on a span that is too short for the small scatter of a road that repeats."""
+        if self.span is None or self.span >= SHORTEST_SPAN_S * (1.0 - 1e-9):
+            return ()
+        return (
+            f"{self.span:.3g} s of road {self.name} are evaluated: from {SHORTEST_SPAN_S:g} s on comfort scatters by "
+            "less than 1 %; choose a longer --duration",
+        )
+
     def signal(self) -> Signal:
         """Generate the plate signals."""
         if self.road == LEVEL:
             return self._level(USUAL_DURATION if self.duration is None else self.duration)
         road, duration = self._road()
         wheels = {name: (behind, side) for name, behind, side in self.wheels}
-        signal = drive(road, speed=self.speed / 3.6, wheels=wheels, duration=duration, rate=self.rate)
+        begin = None if self.span is None else self.skip
+        signal = drive(road, speed=self.speed / 3.6, wheels=wheels, duration=duration, rate=self.rate, begin=begin)
         if isinstance(road, IsoRoad) or not self.random:
             obstacle = self.obstacle
             left = None if obstacle is None else self._times(obstacle)[1]
-            return replace(signal, random=self.random, left_obstacle=left)
+            return replace(
+                signal, random=self.random, left_obstacle=left, notices=self.notices, repeats_after=self.span
+            )
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
 
     def _road(self) -> tuple[IsoRoad | MeasuredRoad, float]:
@@ -191,6 +232,7 @@ class RoadDrive:
             track=self.track,
             coherence=self.coherence,
             patch=self.patch,
+            quadruples=self.repeats,
             envelope=self.envelope,
         )
         return iso_road, USUAL_DURATION if duration is None else duration
@@ -205,12 +247,15 @@ class RoadDrive:
         if self.road == LEVEL:
             raise ConfigurationError("IRI: a level road has no roughness; give a road class, a profile or an obstacle")
         road, duration = self._road()
-        length, step = duration * self.speed / 3.6, ROUGHNESS_STEP
+        # A road that repeats is rated over one period.
+        length, step = (self.span or duration) * self.speed / 3.6, ROUGHNESS_STEP
         if isinstance(road, MeasuredRoad):
             length = road.length if self.duration is None else min(length, road.length)
             if road.sampled:
                 step = road.length / (road.distance.size - 1)
         steps = math.floor(length / step * (1.0 + 1e-9)) + 1
+        if self.span is not None:
+            step = length / (steps := max(round(length / step), 2))
         indices: dict[Side, tuple[RoughnessIndex, RoadLevel | None]] = {}
         for side in reversed(get_args(Side)):
             height, _ = road.bare.contact(0.0, step, steps, side, 0.4 / step)
@@ -251,7 +296,10 @@ class RoadDrive:
     def identity(self) -> dict[str, object]:
         """Return all data that determine the signal: parameters, and the digest of a measured profile."""
         identity = asdict(self) | {"road": str(self.road)}
-        del identity["tagged"], identity["contact"], identity["radius"], identity["lifting"]
+        for name in ("tagged", "contact", "radius", "lifting", "period", "start"):
+            del identity[name]
+        if self.span is not None:
+            identity["repeats_after"] = self.span
         if self.envelope is not None:
             identity["envelope"] = asdict(self.envelope)
         if isinstance(self.road, Path):
@@ -268,6 +316,7 @@ class RoadDrive:
             "speed_kmh": self.speed,
             "seed": None if no_class else self.seed,
             "coherence": self.coherence,
+            **({} if self.span is None else {"repeats_after_s": self.span}),
             "contact_patch_m": self.patch,
             **({} if self.envelope is None else {"tyre_contact": self.envelope.words}),
             **({"level": True} if self.road == LEVEL else {}),
@@ -275,3 +324,16 @@ class RoadDrive:
             "behind_m": {name: behind for name, behind, _ in self.wheels},
             "words": signal.source,
         }
+
+
+Source = TypeVar("Source")
+
+
+def evaluated_from(source: Source, start: float | None) -> Source:
+    """Return a road evaluated from a start on [s], None for the default; a class repeats after its evaluated span.
+
+    Other inputs do not depend on the start, and are returned unchanged.
+    """
+    if isinstance(source, RoadDrive) and source.repeats and start is not None and start != source.skip:
+        return replace(source, start=start)
+    return source

@@ -24,6 +24,11 @@ class RoadSettings(Settings):
         type=int,
         metavar="N",
     )
+    period: str | None = setting(
+        "evaluated: the road repeats after the evaluated span, so that comfort of a few seconds scatters little from "
+        "seed to seed; record: it repeats nowhere in the drive; default: evaluated",
+        choices=("evaluated", "record"),
+    )
     coherence: float | None = setting(
         "coherence of left and right track: 1 equal, 0 unrelated; default: of an isotropic road",
         within="[0, 1]",

@@ -4,6 +4,7 @@ A written file has one array per channel with the attributes name, unit, kind, s
 and uneven frequencies in the group `axes`.
 """
 
+from io import FileIO
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.errors import DataError
+from vehicle.mapped_table import release
 from vehicle.signals.formats.channel import Channel, Measurement, even_step, uniform_axis
 from vehicle.signals.formats.matlab_format import with_tables
 from vehicle.signals.formats.mixed_sources import SAMPLED, check_alternation
@@ -278,11 +280,37 @@ def _attribute(item: Any, name: str) -> str:
     return attribute_text(item.attrs.get(name))
 
 
+class _Disk(FileIO):
+    """New file whose first error is kept instead of raised: HDF5 would end the process as it closes the file."""
+
+    error: OSError | None = None
+
+    def write(self, data: Any, /) -> int:
+        """Write all data, or none after an error."""
+        rest = memoryview(data).cast("B")
+        size = rest.nbytes
+        try:
+            while rest and self.error is None:
+                rest = rest[super().write(rest) :]
+        except OSError as error:
+            self.error = error
+        return size
+
+    def check(self) -> None:
+        """Raise the kept error."""
+        if self.error is not None:
+            raise self.error
+
+    def __exit__(self, *error: object) -> None:
+        """Close the file, and raise the kept error, from which HDF5 has others."""
+        super().close()
+        self.check()
+
+
 def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     """Write channels to an HDF5 file, one array per channel."""
     h5py = extra("h5py", "hdf5", "writing HDF5")
-    # The file is made in memory: an error as HDF5 closes a file on a full disk cannot be caught, and ends the process.
-    with h5py.File(path.name, "w", driver="core", backing_store=False) as file:
+    with _Disk(path, "w+") as disk, h5py.File(disk, "w") as file:
         file.attrs["program"] = description
         for number, channel in enumerate(channels, 1):
             array = file.create_dataset(f"{number:04d}", data=channel.values, compression="gzip", compression_opts=4)
@@ -298,6 +326,5 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
                 array.attrs["step"] = 0.0 if step is None else step
                 if step is None:
                     file.create_dataset(f"{AXES}/{number:04d}", data=channel.axis)
-        file.flush()
-        image = file.id.get_file_image()
-    path.write_bytes(image)
+            release(channel.values)
+            disk.check()

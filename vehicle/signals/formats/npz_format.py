@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
+from vehicle.mapped_table import release
 from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.optional_library import reading
 from vehicle.signals.formats.table import Header, Record, Table, Wanted, name_and_unit
@@ -66,12 +67,10 @@ def write(path: Path, record: Record, frame: str) -> None:
 
     Without compression, which takes longer than the run and reduces the file by a sixth only.
     """
-    with path.open("wb") as file:
-        np.savez(
-            file,
-            allow_pickle=False,
-            time=record.time,
-            **{name: np.asarray(values) for name, values in record.channels.items()},
-            units=np.array([f"{name} [{unit}]" for name, unit in record.units.items()]),
-            frame=np.array(frame),
-        )
+    units = np.array([f"{name} [{unit}]" for name, unit in record.units.items()])
+    with zipfile.ZipFile(path, "w") as archive:
+        # As `numpy.savez` does, channel by channel.
+        for name, values in {"time": record.time, **record.channels, "units": units, "frame": np.array(frame)}.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, np.asarray(values), allow_pickle=False)
+            release(values)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vehicle.arrays import Vector
 from vehicle.errors import DataError
+from vehicle.mapped_table import release
 from vehicle.signals.analysis import samples
 
 TIME = "time [s]"
@@ -126,6 +127,7 @@ class Record:
                 )
             if not np.isfinite(values).all():
                 raise DataError(f"record: {name} contains NaN or infinity; correct the record, or cut this part out")
+            release(values)
 
     @property
     def start(self) -> float:

@@ -127,8 +127,8 @@ def read_measured(
             f"their names suggest {shlex.join(options)}" if options else f"channels of the model look like {examples}"
         )
         text = (
-            "no channel is named like one of the model; set --map CHANNEL=NAME, NAME a number, exact name or pattern "
-            f"with *; the file has {listed}; {advice}"
+            "no channel has the name of a channel of the model; set --map CHANNEL=NAME, where NAME is a number, a "
+            f"name or a pattern with *; the file has {listed}; {advice}"
         )
         raise FindingError(path, [Finding(text, "unmapped", options)])
     other = next((name for name in selection.units if name and name not in {*roles, *output_of.values()}), None)

@@ -155,8 +155,8 @@ def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> t
         )
     if lower == "force" or "force" in upper:
         raise DataError(
-            f"{where} is in {channel.unit}, a response to a force; the plates of the model move: use a response to the "
-            "motion of the plate, or time histories of response and plate"
+            f"{where} is in {channel.unit}, a response to a force, but the input of the model is the motion of a "
+            "plate: use a response to that motion, or time histories of response and plate"
         )
     if upper not in ORDERS or lower not in ORDERS:
         raise DataError(

@@ -1,6 +1,6 @@
 """Comfort of an acceleration record after ISO 2631-1, BS 6841, ISO 5349-1 or EN 12299: offset, SEAT value."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
 from vehicle.signals.analysis.contact_vibration import ContactVibration
 from vehicle.signals.analysis.daily_exposure import DailyExposure, exposure
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.evaluation import (
     LARGEST_MEAN,
     OFFSET_EFFECT,
@@ -28,6 +29,7 @@ from vehicle.signals.records.acceleration import read_acceleration
 from vehicle.signals.records.channel_faults import copies
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.finding import FindingError, findings_of
+from vehicle.signals.records.run_summary import available_summary
 from vehicle.stored import Stored
 
 OFFSETS = ("refuse", "remove", "keep")
@@ -272,6 +274,11 @@ def _read(
 ) -> Record:
     """Read the acceleration of a point; reject mean and drift of the checked axes that change the comfort values."""
     record = read_acceleration(file, point, choice)
+    if (choice is None or choice.last is None) and available_summary(Path(file).parent):
+        # Only the record of a run has a sample that closes its span.
+        part = evaluated_span(record.time.size, record.step, 0.0)
+        channels = {name: values[part] for name, values in record.channels.items()}
+        record = replace(record, time=record.time[part], channels=channels)
     if offset != "refuse":
         return record
     gravity = findings_of(record.notices, kinds=("gravity",))

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.road_level import RoadLevel, road_level
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.vibration_spectra import RANGE, ChannelSpectrum, vibration_spectra
@@ -164,7 +165,7 @@ def recorded_spectra(
     frequency_range: tuple[float, float] = RANGE,
     accelerations: bool = True,
 ) -> RecordSpectra:
-    """Return the spectra of time histories; further arguments and errors like `record_spectra`.
+    """Return the spectra of the time histories of a run; further arguments and errors like `record_spectra`.
 
     Args:
         record: time histories with their units.
@@ -176,7 +177,7 @@ def recorded_spectra(
         accelerations: refuse channels of another unit.
     """
     step = float(record.time[-1] - record.time[0]) / (record.time.size - 1)
-    evaluated = slice(max(round((begin - float(record.time[0])) / step), 0) if begin else 0, None)
+    evaluated = evaluated_span(record.time.size, step, max(begin - float(record.time[0]), 0.0) if begin else 0.0)
     names = _chosen(channels, record.units, name, (*([SEAT] if seated else []), *BY_DEFAULT), accelerations)
     histories = {name: record.channels[name][evaluated] for name in names}
     return RecordSpectra(

@@ -20,6 +20,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
 from vehicle.runs.figures.chosen_figure import chosen_figure
 from vehicle.settings import with_settings
+from vehicle.signals.excitation.road_drive import evaluated_from
 from vehicle.studies.optimisation.front_checks import (
     mujoco_differences,
     named_cars,
@@ -29,6 +30,7 @@ from vehicle.studies.optimisation.front_checks import (
 )
 from vehicle.studies.optimisation.outcome import outcome
 from vehicle.studies.optimisation.problem import parsed_criteria, parsed_tolerance
+from vehicle.studies.optimisation.screening import screening
 from vehicle.studies.optimisation.search import pymoo
 from vehicle.studies.optimisation.search_result import FoundCars
 from vehicle.studies.optimisation.search_settings import SearchSettings
@@ -36,6 +38,7 @@ from vehicle.studies.optimisation.stored_search import stored_search
 from vehicle.studies.optimisation.trials import NO_TOLERANCES, Spread, Trials, bands, on_executor, samples_for
 from vehicle.studies.optimisation.variables import problem_of, require_bounds, toleranced
 from vehicle.studies.sweeps.case_evaluation import evaluate
+from vehicle.studies.sweeps.estimate_measure import ESTIMATE, EstimateMeasure, estimate_measure
 from vehicle.studies.sweeps.executors import StandingExecutor, process_pool
 from vehicle.studies.sweeps.figure_inputs import require_on_inputs
 from vehicle.studies.sweeps.function_measure import RunFunction, require_picklable
@@ -77,15 +80,24 @@ class SearchPlan:
             cars=settings.cars,
             numbers=len(trials.problem.ranges) + len(trials.problem.criteria),
         )
-        if settings.executor is None and settings.jobs > 1:
+        jobs = settings.jobs or 1
+        if settings.executor is None and jobs > 1:
             require_picklable(trials.measure)
         with ExitStack() as held:
-            if settings.executor is not None or settings.jobs > 1:
-                make = settings.executor or partial(process_pool, settings.jobs)
+            executor: Executor | StandingExecutor | None = None
+            if settings.executor is not None or jobs > 1:
+                make = settings.executor or partial(process_pool, jobs)
                 executor = make if isinstance(make, Executor) else held.enter_context(StandingExecutor(make))
                 trials = replace(trials, evaluate=on_executor(executor, trials.measure))
             base, generations = stored_search(trials, folder, settings)
-            outcome_of_search = outcome(trials.problem, base, generations)
+            outcome_of_search, screened = outcome(trials.problem, base, generations), None
+            if settings.screen is not None:
+                assert isinstance(trials.measure, EstimateMeasure)
+                trials = replace(trials, engine=settings.engine, measure=trials.measure.each)
+                if executor is not None:
+                    trials = replace(trials, evaluate=on_executor(executor, trials.measure))
+                screened = screening(trials, outcome_of_search, settings.screen)
+                outcome_of_search = screened.outcome
             cars_by_name = named_cars(trials, outcome_of_search)
             nominal = without_tolerances(trials, outcome_of_search) if trials.spread.tolerances else None
             quantile = trials.spread.quantile > 0.0
@@ -93,7 +105,7 @@ class SearchPlan:
             checked = mujoco_differences(trials, outcome_of_search) if settings.check else None
         return FoundCars(
             outcome=outcome_of_search,
-            trials=self.trials,
+            trials=replace(trials, evaluate=self.trials.evaluate),
             vehicle=self.vehicle,
             cars=cars_by_name,
             skip=self.skip,
@@ -101,6 +113,7 @@ class SearchPlan:
             nominal=nominal,
             reached=reached,
             checked=checked,
+            screened=screened,
             notices=tuple(validity_warnings(trials, cars_by_name)),
         )
 
@@ -120,6 +133,7 @@ def plan_search(
     if len(set(names)) < len(names):
         raise ConfigurationError(f"inputs {', '.join(names)}: equal names; rename a file, or use each input once")
     start = common_start(sources, settings.skip)
+    sources = [evaluated_from(source, start) for source in sources]
     functions = dict(minimise) if isinstance(minimise, Mapping) else {}
     criteria = parsed_criteria(list(minimise), settings.maximise, settings.limits, names)
     figures = {
@@ -149,6 +163,8 @@ def plan_search(
             tolerances = [parsed_tolerance(f"{path}={size}") for path, size in tolerances.items()]
         each = toleranced(vehicle, tolerances)
         spread = Spread(tolerances=each, bands=bands(len(each), count, settings.seed), quantile=chosen)
+    if settings.screen is not None:
+        measure = estimate_measure(measure, vehicle, sources)
     trials = Trials(
         problem=problem,
         inputs=sources,
@@ -156,7 +172,7 @@ def plan_search(
         evaluate=evaluate,
         fixed=car.overrides,
         vehicle=file,
-        engine=settings.engine,
+        engine=settings.engine if settings.screen is None else ESTIMATE,
         spread=spread,
     )
     return SearchPlan(trials=trials, vehicle=vehicle, skip=start, settings=settings)

@@ -16,6 +16,7 @@ from vehicle.runs.car import Car
 from vehicle.studies.optimisation.car_table import columns
 from vehicle.studies.optimisation.front_checks import NEW_CARS, Differences, Shares
 from vehicle.studies.optimisation.outcome import Outcome
+from vehicle.studies.optimisation.screening import Screening
 from vehicle.studies.optimisation.search_files import OtherFront, agreement, numbers, write_search
 from vehicle.studies.optimisation.trials import Trials
 from vehicle.studies.sweeps.case import all_tyre_words
@@ -40,6 +41,7 @@ class FoundCars:
         nominal: values of the Pareto front without tolerances, (f, objectives and limits); None without tolerances.
         reached: share of new cars within the tolerances with values as good as stated [-]; None without a quantile.
         checked: relative differences between MuJoCo and the engine of the search [-]; None without a check.
+        screened: screening by estimates, whose best cars are in `outcome`; None for a search by runs.
         notices: named cars that left the valid range of the reduced engine.
     """
 
@@ -52,6 +54,7 @@ class FoundCars:
     nominal: Vector | None
     reached: Shares | None
     checked: Differences | None
+    screened: Screening | None
     notices: tuple[str, ...]
 
     def __repr__(self) -> str:
@@ -131,6 +134,7 @@ class FoundCars:
                 "evaluated_from_s": self.skip,
                 "notices": list(self.notices),
                 "mujoco": self.checked,
+                **({} if self.screened is None else {"estimate": self.screened.summary}),
                 "made_cars": None
                 if self.nominal is None
                 else {
@@ -159,7 +163,10 @@ class FoundCars:
         )
         if failed:
             lines.append(f"first failure: {failed[0]}")
+        if self.screened is not None:
+            lines.append(self.screened.sentence)
         lines += self._table()
+        lines += [] if self.screened is None else self.screened.lines
         if spread.tolerances:
             lines.append(f"values: {spread.statistic} within the tolerances")
         for name, shares in (self.reached or {}).items():

@@ -70,6 +70,13 @@ class SearchSettings(PoolSettings):
         type=float,
         metavar="Q",
     )
+    screen: int | None = setting(
+        "estimate all cars on road classes without a run, and run the N best with the engine; every run car is shown "
+        "beside its estimate",
+        within="[1, inf)",
+        type=int,
+        metavar="N",
+    )
     engine: str = engine_setting("reduced")
     skip: float | None = skip_setting()
     check: bool = setting("also run the named cars with MuJoCo and report the difference", False, action="store_true")

@@ -70,7 +70,7 @@ class TargetSearch:
                 return text
             limits, them = ("limit that binds is", "it") if len(binding) == 1 else ("limits that bind are", "them")
             return (
-                f"{text} The {limits} {' and '.join(binding)}: the car only just meets {them} and may miss {them} on "
+                f"{text} The {limits} {' and '.join(binding)}: the car just meets {them} and may miss {them} on "
                 "another road; check with report --targets, or search with a stricter limit."
             )
         worst, *others = sorted(self.change.active, key=lambda index: -self.change.excess[index])

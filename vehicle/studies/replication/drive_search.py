@@ -119,6 +119,7 @@ def replicate_drive(
     car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
     wanted = read_target(path, names, options, settings.band, car.vehicle.solver.record_rate)
     plant = DrivenCar(car, driven_wheels(settings.wheels, wanted, car.vehicle.shaker_wheel), wanted, settings.engine)
+    plant.stated_errors = settings.stated_errors
     replication = replicate(plant, wanted.values, wanted.lines, settings)
     if not any(step.kept for step in replication.steps):
         raise SimulationError(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vehicle.names import CORNERS
-from vehicle.settings import Settings, engine_setting, pair, setting
+from vehicle.settings import Settings, engine_setting, pair, setting, stated_errors_setting
 
 if TYPE_CHECKING:
     from vehicle.signals.records.choice import Choice
@@ -59,4 +59,5 @@ class DriveSettings(Settings):
         "default: %(default)s",
     )
     engine: str = engine_setting("auto")
+    stated_errors: bool = stated_errors_setting()
     progress: Callable[[Step], None] | None = setting("called with each step of the iteration")

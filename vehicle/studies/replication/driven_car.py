@@ -29,6 +29,7 @@ class DrivenCar(Plant):
         settled: number of samples at the beginning in which a drive rises from rest; their errors are excluded.
         damping: equivalent viscous constants of the dampers [N s/m], (d,).
         last: the last run.
+        stated_errors: see `Car.run`.
     """
 
     def __init__(self, car: Car, wheels: tuple[str, ...], target: Target, engine: str) -> None:
@@ -46,13 +47,16 @@ class DrivenCar(Plant):
         step = float(target.time[1])
         self.settled = round(min(RAMP_S, 0.1 * float(target.time[-1])) / step)
         self.last: Run | None = None
+        self.stated_errors = True
         self.ramp: tuple[str, ...] = ()
 
     def run(self, drive: Vector) -> Vector:
         """Run the car on plate displacements (p, n) and return its accelerations (k, n)."""
         moving = [f"{damper.name}_{quantity}" for damper in self.dampers for quantity in ("velocity", "force")]
         channels = dict.fromkeys([*self.target.channels, *moving])
-        run = self.car.run(self.signal(drive), engine=self.engine, channels=tuple(channels))
+        run = self.car.run(
+            self.signal(drive), engine=self.engine, channels=tuple(channels), stated_errors=self.stated_errors
+        )
         self.damping = np.array(
             [
                 equivalent_damping(damper.law, run[f"{damper.name}_velocity"], run[f"{damper.name}_force"])

@@ -16,7 +16,7 @@ from vehicle.signals.analysis.ride_comfort import wave_names
 from vehicle.studies.sweeps.case_result import Row
 
 MEANING_OF_ERROR = "+-: half-width of the 95 % interval of a change, for random inputs like these"
-NO_ERROR = "no +- given: a single event has no random error"
+NO_ERROR = "no +- given: neither a single event nor an estimate without a run has a random error"
 UNKNOWN_ERROR = "no +- given: the uncertainty of a change in this figure is unknown"
 """Words of tables with and without errors."""
 

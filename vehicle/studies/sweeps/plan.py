@@ -23,12 +23,13 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.fast_run import fast_run
 from vehicle.runs.car.outside_tests import RAIL, outside_tests
 from vehicle.settings import with_settings
-from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.road_drive import RoadDrive, evaluated_from
 from vehicle.studies.sweeps.case import all_tyre_words, overrides_of, signal_of
 from vehicle.studies.sweeps.case_evaluation import OF_A_RUN, loaded_car, reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.comfort_ranking import measured_evaluation, ranking_evaluation
 from vehicle.studies.sweeps.dispatcher import FILL
+from vehicle.studies.sweeps.estimate_measure import ESTIMATE, NOTE, estimate_measure
 from vehicle.studies.sweeps.evaluation import Evaluation
 from vehicle.studies.sweeps.figure_inputs import require_on_inputs
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, chosen_measure
@@ -54,7 +55,7 @@ class SweepPlan:
     measure: Measure  # measure of each run
     skip: float  # start of the evaluation [s]
     settings: SweepSettings  # settings of the runs
-    notes: tuple[str, ...]  # messages on side effects of the varied parameters
+    notes: tuple[str, ...]  # messages on side effects of the varied parameters, and on short roads
     # returns the evaluation of the table, for a caption with tyres and evaluated span
     evaluation_of: Callable[[SweepTable, str], Evaluation]
 
@@ -71,6 +72,8 @@ class SweepPlan:
         the reduced engine the message names the first input on which the first car leaves its valid range.
         """
         engine = self.cases[0].engine
+        if self.settings.estimate:
+            return (NOTE,)
         if not isinstance(self.measure, BatchMeasure):
             return ()
         if engine == "reduced":
@@ -169,12 +172,18 @@ def plan_sweep(
     if any(text.partition("=")[0].strip().endswith("speed") for text in each):
         require_speed_of_roads(sources, changes)
     start = common_start(sources, settings.skip)
-    cases = Cases(changes, sources, engine=settings.engine, vehicle=vehicle, fixed=car.overrides)
+    sources = [evaluated_from(source, start) for source in sources]
+    engine = ESTIMATE if settings.estimate else settings.engine
+    cases = Cases(changes, sources, engine=engine, vehicle=vehicle, fixed=car.overrides)
     states = {(*car.overrides, *overrides_of(source)) for source in sources}
-    idle = tuple(set.intersection(*(set(_idle_notes(vehicle, state, changes, settings.engine)) for state in states)))
-    if idle and all(_all_idle(vehicle, state, each, settings.engine) for state in states):
+    run = [source for source in sources if isinstance(source, RoadDrive) and not settings.estimate]
+    short = dict.fromkeys(text for source in run for text in source.notices)
+    idle = tuple(set.intersection(*(set(_idle_notes(vehicle, state, changes, engine)) for state in states)))
+    if idle and all(_all_idle(vehicle, state, each, engine) for state in states):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     measure = chosen_measure(settings.measure, car.vehicle, start)
+    if settings.estimate:
+        measure = estimate_measure(measure, car.vehicle, sources)
     require_on_inputs(measure, car, [changes[0], changes[-1]], sources)
     return SweepPlan(
         name=car.vehicle.name,
@@ -182,7 +191,7 @@ def plan_sweep(
         measure=measure,
         skip=start,
         settings=settings,
-        notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle),
+        notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle, *short),
         evaluation_of=evaluation_of or (ranking_evaluation if settings.measure is None else measured_evaluation),
     )
 

@@ -57,18 +57,19 @@ def state_size(
     worker = samples = 0.0
     if settings.executor is None or isinstance(settings.executor, StandingExecutor):
         worker, samples = _worker(each, runs, measure)
-    busy = min(settings.jobs, runs)
-    memory = busy * worker + (settings.jobs - busy) * BASE + CASE * runs if worker else 0.0
+    jobs = settings.jobs or 1
+    busy = min(jobs, runs)
+    memory = busy * worker + (jobs - busy) * BASE + CASE * runs if worker else 0.0
     disk = cars * (ROW_OF_CAR + VALUE_OF_CAR * numbers) if cars else runs * (ROW + VALUE * len(measure.units))
     disk = 0.0 if settings.folder is None else disk
     remedy = "to reduce it, shorten the inputs, or choose a lower solver.record_rate"
-    if settings.jobs > 1 and worker:
+    if jobs > 1 and worker:
         fit = max(int((free_memory() - CASE * runs) / worker), 1)
         fewer = f"--jobs {fit}" if fit < busy else "fewer processes (--jobs)"
         remedy = f"to reduce it, use {fewer}, shorten the inputs, or choose a lower solver.record_rate"
     if disk > memory:
         remedy = "to reduce it, vary fewer values, or use fewer inputs"
-    subject = f"{runs} runs of up to {samples:.3g} samples on {settings.jobs} processes" if samples else f"{runs} runs"
+    subject = f"{runs} runs of up to {samples:.3g} samples on {jobs} processes" if samples else f"{runs} runs"
     say_size(settings.folder or Path(), subject.replace("on 1 processes", "in one process"), memory, disk, remedy)
 
 
@@ -81,7 +82,7 @@ def _worker(each: Collection[Case], runs: int, measure: Measure) -> tuple[float,
         # The statement must not end a sweep: an invalid car, and an input of the user that raises, are failed rows.
         with suppress(Exception):
             if case.source not in durations:
-                durations[case.source] = _duration(case.source)
+                durations[case.source] = duration_of(case.source)
             if (car := (case.vehicle, rates_of(case))) not in vehicles:
                 vehicles[car] = load_vehicle(case.vehicle, case.overrides)
             simulated.append((case, vehicles[car], durations[case.source]))
@@ -97,6 +98,6 @@ def _worker(each: Collection[Case], runs: int, measure: Measure) -> tuple[float,
     return largest
 
 
-def _duration(source: Input) -> float:
+def duration_of(source: Input) -> float:
     """Return the length of an input [s]; of a road without making it."""
     return float(getattr(source, "duration", None) or signal_of(source).duration)

@@ -3,6 +3,7 @@
 import time as clock
 from collections.abc import Collection, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -15,6 +16,7 @@ from vehicle.settings import with_settings
 from vehicle.studies.sweeps.case import Case, drivings, rates_of
 from vehicle.studies.sweeps.case_keys import CaseKeys
 from vehicle.studies.sweeps.case_result import Block
+from vehicle.studies.sweeps.chosen_jobs import chosen_jobs
 from vehicle.studies.sweeps.dispatcher import Dispatcher
 from vehicle.studies.sweeps.executors import ThisProcess, process_pool
 from vehicle.studies.sweeps.function_measure import require_picklable
@@ -51,11 +53,10 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
         SimulationError: the executor broke and cannot be created again; finished rows are stored.
     """
     folder, progress = settings.folder, settings.progress
-    # A run in this process cannot be stopped.
-    apart = settings.jobs > 1 or settings.time_limit is not None
-    if apart and not settings.executor:
-        require_picklable(measure)
     key_of, each = CaseKeys(measure), _one_of_each(cases)
+    # A run in this process cannot be stopped.
+    if not settings.executor and (settings.time_limit is not None or settings.jobs not in (1, None)):
+        require_picklable(measure)
     for case in each:
         key_of(case)  # raises the error of an input or a vehicle file before the first run
     with ExitStack() as held:
@@ -74,11 +75,16 @@ def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) 
                 progress(done / len(cases))
 
         if len(todo):
+            jobs, text = (settings.jobs, "") if settings.jobs else chosen_jobs(each, len(todo), measure)
+            settings = replace(settings, jobs=jobs)
+            if text and settings.notice is not None and not settings.executor:
+                settings.notice(text)
+            apart = jobs > 1 or settings.time_limit is not None
             state_size(each, len(todo), measure, settings)
             if progress is not None:
                 progress(done / len(cases))
             dispatcher = Dispatcher(
-                settings.executor or (partial(process_pool, settings.jobs) if apart else ThisProcess),
+                settings.executor or (partial(process_pool, jobs) if apart else ThisProcess),
                 measure,
                 key_of=key_of,
                 time_limit=settings.time_limit,

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.digits import aligned
+from vehicle.digits import aligned, decimals
 from vehicle.digits import number as number_text
 from vehicle.errors import DataError
 from vehicle.model.parameters.parameter_list import value_text
@@ -19,6 +19,7 @@ from vehicle.signals.analysis.ride_comfort import ERROR, MEANING, SEAT_PREFIX, S
 from vehicle.studies.sweeps.case import Case, parameter_cells
 from vehicle.studies.sweeps.case_result import Row
 from vehicle.studies.sweeps.change_error import MEANING_OF_ERROR, NO_ERROR, change_errors, half_width
+from vehicle.studies.sweeps.estimate_measure import ESTIMATE, WORDS
 
 RANKED_BY = (f"{SEAT_PREFIX}{WEIGHTED}", WEIGHTED)
 """Columns by which cars are ranked: on the cushion of a car with a seat, otherwise at the seat rail."""
@@ -139,7 +140,18 @@ class RankedCars:
     def change_text(self, car: int) -> str:
         """Return the change from the first car [%] with its half-width, e.g. "-2.1 +- 0.4"; without one, "-2.10"."""
         width = self.half_width[car]
-        return f"{self.change(car):+.2f}" + (f" +- {number_text(width, 2)}" if math.isfinite(width) else "")
+        error = f" +- {number_text(width, 2)}" if math.isfinite(width) else ""
+        return f"{self.change(car):+.{decimals(width)}f}{error}"
+
+    def change_cell(self, car: int, unit: str = "") -> str:
+        """Return the change from the first car [%] for a table, with the digits of its half-width."""
+        change = self.change(car)
+        return f"{change:+.{decimals(self.half_width[car])}f}{unit}" if math.isfinite(change) else "-"
+
+    def half_width_cell(self, car: int) -> str:
+        """Return the half-width of a change [%] for a table."""
+        width = self.half_width[car]
+        return f"{width:.{decimals(width)}f}" if width > 0.0 else "-"
 
     def headings(self, name_of: Callable[[str], str] = str) -> list[str]:
         """Return the varied parameters with their units; `name_of` returns the name of a path."""
@@ -197,6 +209,7 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
         return None
     errors, events = change_errors(table.rows(), rows_of_cars, ranked_by)
     widths = 100.0 * half_width(errors / values[rows_of_cars[0]])
+    error_words = NO_ERROR if events.all() else MEANING_OF_ERROR if np.any(widths > 0.0) else ""
     return RankedCars(
         prefix=prefix,
         paths=names,
@@ -207,7 +220,7 @@ def ranked_cars(table: SweptCases) -> RankedCars | None:
         seat_value=seat_values[0] if seat_values else None,
         order=order,
         half_width=widths,
-        error_words=NO_ERROR if events.all() else MEANING_OF_ERROR if np.any(widths > 0.0) else "",
+        error_words=WORDS if base.engine == ESTIMATE else error_words,
         inputs=len({case.source for case in table.cases}),
         units={path: unit_of_override(vehicle, path) for path in names},
     )
@@ -242,8 +255,8 @@ def ranking_lines(cars: RankedCars) -> list[str]:
         [
             *cars.cells[car],
             f"{cars.weighted[car]:.4g}",
-            "base" if car == 0 else f"{cars.change(car):+.2f} %" if math.isfinite(cars.change(car)) else "-",
-            *([f"{cars.half_width[car]:.2f}" if cars.half_width[car] > 0.0 else "-"] if with_errors else []),
+            "base" if car == 0 else cars.change_cell(car, " %"),
+            *([cars.half_width_cell(car)] if with_errors else []),
             f"{cars.unweighted[car]:.4g}",
             *([] if cars.seat_value is None else [f"{cars.seat_value[car]:.4g}"]),
         ]
@@ -282,6 +295,7 @@ def measure_lines(table: SweptCases) -> list[str]:
         for row, case in enumerate(islice(table.cases, SHOWN))
     ]
     lines = aligned([["input", *paths, *(f"{name} [{units[name]}]" for name in columns)], *rows], left=1)
+    lines += [WORDS] if base.engine == ESTIMATE else []
     left = len(table.cases) - len(rows)
     return [*lines, f"{left} more runs: see table.csv"] if left else lines
 

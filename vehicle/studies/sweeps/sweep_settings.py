@@ -45,12 +45,13 @@ def _executor(text: str) -> Callable[[], Executor]:
 class PoolSettings(Settings):
     """Settings of many runs on processes or a cluster; the results do not depend on them."""
 
-    jobs: int = setting(
-        "processes for independent runs; default %(default)s: no further process is started",
+    jobs: int | None = setting(
+        "processes for independent runs; default %(default)s, None: chosen by the estimated work",
         1,
         within="[1, inf)",
         type=_jobs,
         metavar="N",
+        help="processes for independent runs; default %(default)s: no further process is started",
     )
     executor: Callable[[], Executor] | Executor | None = setting(
         "function that returns an executor, used instead of `jobs`; or an executor, which stays open and is not "
@@ -83,6 +84,12 @@ class SweepSettings(RunSettings):
     """Settings of a sweep of a car."""
 
     engine: str = engine_setting("auto")
+    estimate: bool = setting(
+        "estimate each car on a road class without a run, about 2 ms a car if only its dampers differ: comfort, tyre "
+        "load and RMS accelerations; a car that the estimate does not cover is a failed row",
+        False,
+        action="store_true",
+    )
     skip: float | None = skip_setting()
     measure: MeasureChoice = setting(
         "figure instead of comfort and slip shares, for example travel, tyre_load, peak:seat_rail_acc_z or "

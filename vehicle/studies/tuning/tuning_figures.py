@@ -94,7 +94,7 @@ def plot_histories(path: Path, target: RecordTarget, start: Car, fitted: Car, so
             axis.set_ylabel(f"{channel_words(channel)}\n[{units[channel].replace('2', '²')}]")
             axis.set_xlim(time[inside][0], time[inside][-1])
         axes[0].legend(loc="upper right", ncols=3)
-        axes[-1].set_xlabel("time of the signal [s]")
+        axes[-1].set_xlabel("time [s]")
         figure.align_ylabels(axes)
 
 

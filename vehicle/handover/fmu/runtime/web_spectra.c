@@ -79,17 +79,19 @@ EXPORT void differentiate(const double *position, int32_t samples, double interv
   }
 }
 
-/* RMS from the sample `first` on of one record or two, weighted; record: (records, samples). */
+/* RMS from the sample `first` on of one record or two, weighted, without the last sample, which closes the span; record:
+ * (records, samples). */
 EXPORT void weighted_rms(const Transform *t, const double *record, int32_t records, int32_t samples, int32_t first,
                          double interval, const double *sections, int32_t count, double *rms) {
   double *x = t->work, *y = x + t->n;
+  int32_t end = samples - 1;
   memset(x, 0, (size_t)(2 * t->n) * sizeof(double));
-  for (int32_t i = 0; i < records; i++) memcpy(i ? y : x, record + i * samples, (size_t)samples * sizeof(double));
+  for (int32_t i = 0; i < records; i++) memcpy(i ? y : x, record + i * samples, (size_t)end * sizeof(double));
   core_weigh(t, x, y, interval, sections, count);
   for (int32_t i = 0; i < records; i++) {
     double sum = 0.0, *values = i ? y : x;
-    for (int32_t k = first; k < samples; k++) sum += values[k] * values[k];
-    rms[i] = root(sum / (samples - first));
+    for (int32_t k = first; k < end; k++) sum += values[k] * values[k];
+    rms[i] = root(sum / (end - first));
   }
 }
 
