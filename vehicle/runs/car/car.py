@@ -88,8 +88,7 @@ class Car(SteadyCar):
                 or value raises a `ConfigurationError`.
         """
         file = None if path is None else mention(vehicle_file(Path(path)))
-        changes = assignments(overrides)
-        table, vehicle = load_file(file, changes)
+        table, vehicle = load_file(file, changes := assignments(overrides))
         car = cls(vehicle, folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides, car._table = tuple(changes), table
