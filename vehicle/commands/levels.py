@@ -16,7 +16,6 @@ from vehicle.commands.options import (
     car_of,
     command_parser,
     destination_of,
-    figures_option,
     message_options,
     output_options,
     read,
@@ -48,7 +47,7 @@ def parser() -> Parser:
     parser.former("--vehicle", "--vehicle: no such option; name the car first, for example `levels sedan`")
     parser.add_argument("--json", action="store_true", help="print JSON")
     output_options(parser, None, default="runs/levels_<name of the car>")
-    figures_option(parser)
+    parser.add_argument("--no-figures", dest="figures", action="store_false", help="write no pictures (SVG)")
     message_options(parser, quiet=True)
     return parser
 

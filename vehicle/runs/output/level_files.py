@@ -281,9 +281,8 @@ def printed(report: LevelReport, folder: Path | None, files: Sequence[str]) -> s
     states = report.states
     left = int(np.sum(~states.ended))
     lines = [
-        f"{states.car.vehicle.name}, {report.motion}; {len(states.frequency)} frequencies "
-        f"{number(states.frequency[0])} to {number(states.frequency[-1])} Hz, {len(states.level)} levels "
-        f"{number(1e3 * states.level[0])} to {number(1e3 * states.level[-1])} mm",
+        f"{states.car.vehicle.name}, {report.motion}; {_range('frequencies', states.frequency, 'Hz')}, "
+        f"{_range('levels', 1e3 * states.level, 'mm')}",
         f"results: {states.ended.size - left} of {states.ended.size} points, {number(states.iterations.mean(), 2)} "
         f"iterations each; {report.proof()}",
     ]
@@ -299,6 +298,13 @@ def printed(report: LevelReport, folder: Path | None, files: Sequence[str]) -> s
     lines += [f"{channel_words(states.channels[0])}, {number(report.around[0])} to {number(report.around[1])} Hz:"]
     lines += aligned([heads, *table], left=0)
     return "\n".join([*lines, *([f"files: {folder}: {', '.join(files)}"] if folder else [])])
+
+
+def _range(name: str, values: Vector, unit: str) -> str:
+    """Return the number and the ends of values, or a single value."""
+    if len(values) == 1:
+        return f"{number(values[0])} {unit}"
+    return f"{len(values)} {name} {number(values[0])} to {number(values[-1])} {unit}"
 
 
 def printed_cut(report: LevelReport, cut: LevelMap) -> str:
