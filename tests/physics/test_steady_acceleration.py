@@ -145,7 +145,7 @@ def test_loads_under_inclined_gravity():
     assert np.max(np.abs(share)) > 1e-4 * np.min(forces[:, 2])
     validated("Static equilibrium", "kinematic_reference at -3 m/s2: wheel loads under inclined gravity",
               forces[:, 2], np.mean(loads, axis=0) + share, rel=2e-5, unit="N",
-              source="second derivation: run of the car at rest with forces at the contacts, less its couple r x f")  # fmt: skip
+              source="second derivation: run of the car at rest with forces at the contacts, less r x f")  # fmt: skip
 
 
 def undamped(stiffness, model, rows):
