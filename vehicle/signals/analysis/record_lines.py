@@ -109,5 +109,6 @@ class RecordLines:
         lines = np.zeros(self.turn.size, dtype=np.complex128)
         for part in self.parts[::-1]:
             # Horner over the blocks, the last block first.
-            lines = lines * self.turn + self.zoom(part_values(part))
+            lines *= self.turn
+            lines += self.zoom(part_values(part))
         return lines
