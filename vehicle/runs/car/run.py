@@ -194,7 +194,7 @@ class Run:
         """
 
         def at(name: str) -> Vector:
-            return np.stack([self.recording[f"{name}_acc_{axis}"] for axis in AXES])
+            return self.recording.stacked([f"{name}_acc_{axis}" for axis in AXES])
 
         recorded = all(f"seat_acc_{axis}" in self.recording.channels for axis in AXES)
         seated = point == "seat_rail" and self.car.vehicle.seated and recorded
@@ -242,7 +242,7 @@ class Run:
         angle, speed = self.car.vehicle.composition.turning(angle)
         if angle == CRANK and self.car.vehicle.composition.crank_run_up is not None:
             raise ConfigurationError(f"orders: the speed of {angle} changes in this run; use order_cut")
-        histories = np.array([self.recording[name] for name in names])
+        histories = self.recording.stacked(names)
         lines = order_lines(self.time, histories, speed / (2.0 * np.pi), orders, begin=self.skip)
         return named_orders(lines, names, tuple(self.recording.units[name] for name in names), angle)
 

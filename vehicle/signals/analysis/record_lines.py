@@ -71,7 +71,7 @@ class ChirpTransform:
         """Return the lines of a block; (last - first,). block: samples, at most `size`."""
         spectrum = np.fft.fft(block * self.before[: block.size], self.length)
         spectrum *= self.kernel
-        return np.asarray(np.fft.ifft(spectrum)[: self.count] * self.after)
+        return np.asarray(np.fft.ifft(spectrum, out=spectrum)[: self.count] * self.after)
 
 
 class RecordLines:
