@@ -28,8 +28,7 @@ LARGE_FILES = Path("/var/tmp")
 MMAP_THRESHOLD, LARGE_ARRAY = -3, 2**20
 """Option of `mallopt`, and the size from which an array returns its memory to the system when it ends [byte].
 
-glibc keeps the freed arrays of up to 32 MB of a program that had one of this size: 0.4 GB after an hour at 1 kHz.
-Source: mallopt(3), M_MMAP_THRESHOLD."""
+By itself glibc keeps freed arrays of up to 32 MB for later ones. Source: mallopt(3), M_MMAP_THRESHOLD."""
 
 
 def scratch_folder() -> Path:
