@@ -1,5 +1,6 @@
 """Numbers for people, with a number of significant digits and no exponent; times; tables of texts."""
 
+import math
 from collections.abc import Sequence
 
 
@@ -16,6 +17,11 @@ def number(value: float | None, digits: int = 3) -> str:
         digits: significant digits; 100 with one is "100", not "1e+02".
     """
     return "–" if value is None else f"{rounded(value, digits):.10g}"
+
+
+def decimals(error: float) -> int:
+    """Return the number of decimals, two to four, with which the half width of an interval is not 0; 2 without one."""
+    return min(max(2, -math.floor(math.log10(error))), 4) if 0.0 < error < math.inf else 2
 
 
 def beside_limit(value: float, limit: float, digits: int = 3) -> tuple[str, str]:

@@ -1,11 +1,13 @@
 """Coverage of the stated errors by Monte Carlo: `python -m tests.benchmarks.coverage [PART ...] [--repetitions N]`.
 
 Parts: `comfort`, comfort_error and the error of a difference, of a linear car on generated and on Gaussian roads;
-`length`, comfort of 10, 30 and 60 s of one class with the reduced engine; `quantile`, quantiles of made cars; `sobol`,
-intervals of Sobol indices; `tuning`, standard errors of fitted parameters.
+`length`, comfort of 10, 30 and 60 s of one class with the reduced engine; `twin`, comfort and differences of cars on
+roads that repeat, with their linear twins; `ratio`, comfort over a class from roads that do not repeat; `quantile`,
+quantiles of made cars; `sobol`, intervals of Sobol indices; `tuning`, standard errors of fitted parameters.
 """
 
 import argparse
+import itertools
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -16,17 +18,21 @@ import numpy.typing as npt
 import scipy
 
 from tests.studies.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses
+from vehicle.engines.reduced.batch_simulation import COARSE_STEP
 from vehicle.model.parameters.ranges import Range
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Road
-from vehicle.signals.analysis.comfort import comfort_values
-from vehicle.signals.analysis.comfort_error import WAVES, difference_error
-from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, WEIGHTED, comfort_columns, wave_names
+from vehicle.runs.car.class_value import class_values
+from vehicle.signals.analysis.comfort import COMFORT_BAND, comfort_values
+from vehicle.signals.analysis.comfort_error import STUDENT_95, WAVES, difference_error
+from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, WEIGHTED, comfort_columns, wave_names, waves_of
 from vehicle.signals.analysis.road_level import CLASSES, REFERENCE
 from vehicle.signals.excitation.iso_road import isotropic_coherence
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.optimisation.trials import Spread, bands, samples_for
+from vehicle.studies.sweeps.case_evaluation import measured_batch
 from vehicle.studies.sweeps.indices import sobol_indices, sobol_sample
+from vehicle.studies.sweeps.measure import ComfortMeasure
 from vehicle.studies.tuning.least_squares import fit
 
 Vector = npt.NDArray[np.float64]
@@ -139,6 +145,88 @@ def length(repetitions: int) -> Rows:
                 "scatter": values.std(ddof=1),
                 "stated_for_class": np.sqrt(np.mean(error**2)),
                 "comfort_without_skip": np.mean(whole),
+            }
+        )
+    return rows
+
+
+CHANGES = {
+    "sedan": ("rear.damper.viscous=1530", "front.damper.coulomb_friction=100", "body.mass=1200"),
+    "focus_road": ("front.damper.viscous=1800", "front.damper.coulomb_friction=100"),
+}
+"""Car to the changes of the other cars on the same roads."""
+
+
+def twin(repetitions: int) -> Rows:
+    """Errors of 10 s of a road that repeats, 50 and 100 km/h, classes A to C, against the scatter over its seeds."""
+    rows: Rows = []
+    for name, speed, road in itertools.product(CHANGES, (50.0, 100.0), "ABC"):
+        cars = [Car.load(name, [f"driving.speed={speed / 3.6!r}", *change]) for change in ((), *zip(CHANGES[name]))]
+        found = []
+        for seed in range(1, repetitions + 1):
+            drive = Road(road, speed, seed=seed).under(cars[0].vehicle)
+            assert isinstance(drive, RoadDrive)
+            signal = replace(drive, duration=drive.skip + 10.0).signal()
+            measure = ComfortMeasure(skip=drive.skip, timestep=COARSE_STEP)
+            results = measured_batch(cars, signal, measure, accept_invalid=True)
+            found.append([each.values for each in results if each is not None])
+        for value in (UNWEIGHTED, WEIGHTED):
+            table = {key: np.array([[row[key] for row in run] for run in found]) for key in found[0][0]}
+            comfort, error = table[value], table[value] * table[f"{value}{ERROR}"]
+            waves = np.stack([waves_of({key: column[:, car] for key, column in table.items()}, value)
+                              for car in range(len(cars))])  # fmt: skip
+            percent = 100.0 / comfort[:, 0].mean()
+            rows.append(
+                {
+                    "car": f"{name} {speed:g} km/h {road}",
+                    "value": value,
+                    "comfort": comfort[:, 0].mean(),
+                    "scatter_percent": percent * comfort[:, 0].std(ddof=1),
+                    "half_width_percent": percent * 1.96 * np.sqrt(np.mean(error[:, 0] ** 2)),
+                    "covers_95": np.mean(np.abs(comfort[:, 0] - comfort[:, 0].mean()) < 1.96 * error[:, 0]),
+                }
+            )
+            for number, change in enumerate(CHANGES[name], 1):
+                gap, stated = comfort[:, number] - comfort[:, 0], difference_error(waves[number], waves[0])
+                rows.append(
+                    {
+                        "car": f"  {change}",
+                        "value": value,
+                        "change_percent": percent * gap.mean(),
+                        "scatter_percent": percent * gap.std(ddof=1),
+                        "half_width_percent": percent * STUDENT_95 * np.sqrt(np.mean(stated**2)),
+                        "covers_95": np.mean(np.abs(gap - gap.mean()) < STUDENT_95 * stated),
+                    }
+                )
+    return rows
+
+
+def ratio(repetitions: int) -> Rows:
+    """Comfort over roads of a class from 10 s of roads that do not repeat, against 5 roads of 100 s that repeat."""
+    rows: Rows = []
+    for name, speed, road in itertools.product(CHANGES, (50.0, 100.0), "ABC"):
+        car = Car.load(name)
+        long = [car.run(Road(road, speed, duration=102.0, seed=seed), engine="reduced") for seed in range(1, 6)]
+        reference = np.mean([run.comfort().weighted.overall for run in long])
+        found, values = [], []
+        for seed in range(1, repetitions + 1):
+            run = car.run(Road(road, speed, duration=12.0, seed=seed, period="record"), engine="reduced")
+            assert run.road is not None
+            comfort = run.comfort()
+            found.append(comfort.weighted.overall)
+            each = class_values(run.car, run.signal, run.recording, run.skip, run.road, run.signal.band(COMFORT_BAND))
+            # Where the twin explains less than half, the run itself counts.
+            alone = found[-1], 1.96 * comfort.errors[WEIGHTED] * found[-1]
+            values.append(each[WEIGHTED][:2] if WEIGHTED in each else alone)
+        value, half = np.array(values).T
+        rows.append(
+            {
+                "car": f"{name} {speed:g} km/h {road}",
+                "scatter_of_run_percent": 100.0 * np.std(found, ddof=1) / reference,
+                "scatter_percent": 100.0 * value.std(ddof=1) / reference,
+                "bias_percent": 100.0 * (value.mean() / reference - 1.0),
+                "half_width_percent": 100.0 * np.sqrt(np.mean(half**2)) / reference,
+                "covers_95": np.mean(np.abs(value - reference) < half),
             }
         )
     return rows
@@ -270,7 +358,8 @@ def tuning(repetitions: int) -> Rows:
 
 
 PARTS: dict[str, Callable[[int], Rows]] = {
-    "comfort": comfort, "length": length, "quantile": quantile, "sobol": sobol, "tuning": tuning,
+    "comfort": comfort, "length": length, "twin": twin, "ratio": ratio,
+    "quantile": quantile, "sobol": sobol, "tuning": tuning,
 }  # fmt: skip
 
 

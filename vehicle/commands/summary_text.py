@@ -92,17 +92,29 @@ def _forces(summary: RunSummary) -> list[str]:
 
 def _comfort(summary: RunSummary) -> list[str]:
     """Return the lines of comfort at the seat rail and, for a car with seats, on the seat."""
+    from vehicle.signals.records.run_summary import interval_words
 
     lines, points = [], summary.comfort
     if "seat_rail" in points:
         rms, (low, high) = points["seat_rail"].unweighted
         axes = ", ".join(f"{axis} {rms[axis]:.4f}" for axis in "xyz")
-        half = points["seat_rail"].half_interval or {}
-        plus = {name: f" ± {value:.4f}" for name, value in half.items()}
+        half, values = points["seat_rail"].half_interval or {}, {"unweighted": rms["overall"]}
+        values["weighted"] = points["seat_rail"].weighted
+        plus = {name: f" ± {number(100.0 * half[name] / values[name], 2)} %" for name in values if half.get(name)}
         lines.append(
-            f"comfort     seat rail {rms['overall']:.4f}{plus.get('unweighted', '')} m/s2 unweighted RMS, {low:g} to "
-            f"{high:g} Hz ({axes}); {points['seat_rail'].weighted:.4f}{plus.get('weighted', '')} m/s2 weighted RMS "
-            f"(ISO 2631-1){'; ±: 95 % interval over roads of this class' if half else _event_words(summary)}"
+            f"comfort     seat rail {rms['overall']:.4f} m/s2{plus.get('unweighted', '')} unweighted RMS, {low:g} to "
+            f"{high:g} Hz ({axes}); {values['weighted']:.4f} m/s2{plus.get('weighted', '')} weighted RMS (ISO 2631-1)"
+            + (f"; {interval_words(summary, points['seat_rail'])}" if half else _event_words(summary))
+        )
+    over_class = points["seat_rail"].over_class if "seat_rail" in points else None
+    if over_class:
+        each = [
+            f"{number(of['value'], 4)} m/s2 ± {number(100.0 * of['half_interval'] / of['value'], 2)} % {name}"
+            for name, of in over_class.items()
+        ]
+        lines.append(
+            f"            all roads of this class {', '.join(each)}: corrected by the linear car, which explains "
+            f"{number(100.0 * min(of['explained'] for of in over_class.values()))} % of the scatter"
         )
     if (rim := summary.steering_wheel_rim) is not None:
         axes = ", ".join(f"{axis} {rim.weighted_rms[axis]:.4f}" for axis in "xyz")

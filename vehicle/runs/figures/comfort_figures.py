@@ -7,7 +7,7 @@ from vehicle.names import AXES
 from vehicle.runs.figures.figure import Details, Figure, Reduction, Values
 from vehicle.runs.figures.rows import unread
 from vehicle.runs.figures.run_batch import Runs
-from vehicle.signals.analysis.comfort_error import WAVES
+from vehicle.signals.analysis.comfort_error import wave_error
 from vehicle.signals.analysis.ride_comfort import (
     ERROR,
     SEAT_PREFIX,
@@ -15,7 +15,7 @@ from vehicle.signals.analysis.ride_comfort import (
     UNWEIGHTED,
     WEIGHTED,
     comfort_units,
-    wave_names,
+    waves_of,
 )
 from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.seat_value import seat_value
@@ -33,13 +33,10 @@ def _comfort(point: str, name: str) -> Reduction:
 
     def of(_: Vector, details: Details, runs: Runs) -> Values:
         columns = runs.comfort(point, name)
-        if details.axis:
-            return Values(columns[f"{name}_{details.axis}"])
+        column = f"{name}_{details.axis}" if details.axis else name
         if not runs.errors:
-            return Values(columns[name])
-        parts = np.stack([columns[each] for each in wave_names(name)], axis=1)
-        waves = np.ascontiguousarray(parts).view(np.complex128).reshape(-1, WAVES)
-        return Values(columns[name], columns[name] * columns[f"{name}{ERROR}"], waves)
+            return Values(columns[column])
+        return Values(columns[column], columns[column] * columns[f"{column}{ERROR}"], waves_of(columns, column))
 
     return Reduction(of=of, page="comfort" if (point, name) == ("seat_rail", WEIGHTED) else "")
 
@@ -50,7 +47,16 @@ def _seat_value(_: Vector, __: Details, runs: Runs) -> Values:
         seat_value(runs.timestep, cushion, rail, skip=runs.skip).rms if np.any(rail) else np.nan
         for cushion, rail in zip(above, below, strict=True)
     ]
-    return Values(np.array(values))
+    value = np.array(values)
+    if not runs.errors:
+        return Values(value)
+    # d(a/b)/(a/b) = da/a - db/b: the waves of the ratio.
+    of_points = [runs.comfort(point, WEIGHTED) for point in ("seat", "seat_rail")]
+    name = f"{WEIGHTED}_z"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cushion, rail = (waves_of(columns, name) / columns[name][:, None] for columns in of_points)
+    waves = value[:, None] * (cushion - rail)
+    return Values(value, wave_error(waves), waves)
 
 
 def _figure(prefix: str, name: str, meaning: str) -> Figure:

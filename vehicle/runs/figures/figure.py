@@ -24,6 +24,8 @@ class Values(NamedTuple):
     """Standard errors in the unit of the value, (r,); None if unknown."""
     waves: Complex | None = None
     """Slow variations of an RMS for the error of a difference, see `comfort_error`; (r, `WAVES`)."""
+    explained: Vector | None = None
+    """Share of the scatter that the linear twin explains [-]; (r,); None without twins."""
 
     def first(self) -> tuple[float, float | None]:
         """Return value and standard error of the first run; None for an unknown or undefined error."""

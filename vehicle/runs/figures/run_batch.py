@@ -1,5 +1,7 @@
 """Batch of runs of several cars on one signal, of which a figure is computed."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -8,6 +10,7 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car, Run
+from vehicle.runs.car.run_twin import Period, signal_period, twin_channels
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.ride_comfort import comfort_columns
@@ -28,6 +31,7 @@ class Runs:
         skip: time at the beginning that is not evaluated [s].
         band: band of unweighted comfort [Hz].
         errors: False leaves out standard errors.
+        period: road that repeats after the evaluated span, for the linear twins; None without it.
     """
 
     time: Vector
@@ -40,7 +44,9 @@ class Runs:
     skip: float = 0.0
     band: tuple[float, float] = COMFORT_BAND
     errors: bool = True
+    period: Period | None = None
     _comfort: dict[tuple[str, str], dict[str, Vector]] = field(default_factory=dict, init=False)
+    _twins: list[Runs] = field(default_factory=list, init=False)
 
     def __getitem__(self, channel: str) -> Vector:
         """Return the samples of a channel; (r, n)."""
@@ -69,6 +75,26 @@ class Runs:
         """Return the wheels with a damper."""
         return self.vehicles[0].damped_wheels
 
+    @property
+    def twin(self) -> Runs | None:
+        """Return the runs of the linear twins, see `vehicle.runs.car.run_twin`; a car without a twin is at rest.
+
+        None on another road, for another evaluated span, or if no car has a twin. Computed once.
+        """
+        if self.period is None or round(abs(self.skip - self.period.begin) / self.timestep) or not self.cars:
+            return None
+        if not self._twins:
+            records = [{name: rows[car] for name, rows in self.channels.items()} for car in range(len(self.cars))]
+            twins = [
+                twin_channels(car, self.period, record, self.timestep, self.channels)
+                for car, record in zip(self.cars, records, strict=True)
+            ]
+            at_rest = np.zeros(self.time.size)
+            names = next(filter(None, twins), {})
+            channels = {name: np.stack([twin.get(name, at_rest) for twin in twins]) for name in names}
+            self._twins.append(replace(self, channels=channels, period=None))
+        return self._twins[0] if self._twins[0].channels else None
+
     def comfort(self, point: str, name: str) -> dict[str, Vector]:
         """Return the values of a comfort value and its axes, see `ride_comfort.comfort_columns`; computed once.
 
@@ -79,7 +105,13 @@ class Runs:
         if (point, name) not in self._comfort:
             records = self.stacked(*(f"{point}_acc_{axis}" for axis in "xyz"))
             self._comfort[point, name] = comfort_columns(
-                self.timestep, records, skip=self.skip, band=self.band, names=[name], errors=self.errors
+                self.timestep,
+                records,
+                skip=self.skip,
+                band=self.band,
+                names=[name],
+                errors=self.errors,
+                axes=self.errors,
             )
         return self._comfort[point, name]
 
@@ -95,6 +127,7 @@ def single(run: Run) -> Runs:
         random=run.signal.random,
         left_obstacle=left_obstacle(run.road) if run.road is not None else run.signal.left_obstacle,
         cars=(run.car,),
+        period=signal_period(run.signal),
     )
 
 

@@ -8,6 +8,7 @@ from vehicle.runs.car import Run
 from vehicle.runs.figures.chosen_figure import ChosenFigure, chosen_figure
 from vehicle.runs.figures.figure import Values
 from vehicle.runs.figures.run_batch import Runs, evaluated
+from vehicle.signals.analysis.comfort_error import paired
 
 
 def values_of(chosen: ChosenFigure, runs: Runs) -> Values:
@@ -22,10 +23,20 @@ def values_of(chosen: ChosenFigure, runs: Runs) -> Values:
         DataError: the record is too short for the band.
     """
     figure = chosen.figure
-    values = figure.reduces.of(figure.reads.of(chosen, runs), chosen, runs)
-    if figure.certain or (runs.random and runs.errors):
+
+    def on(runs: Runs) -> Values:
+        return figure.reduces.of(figure.reads.of(chosen, runs), chosen, runs)
+
+    values = on(runs)
+    if not (figure.certain or (runs.random and runs.errors)):
+        return Values(values.value)
+    if values.error is None or values.waves is None or (twin := runs.twin) is None:
         return values
-    return Values(values.value)
+    if not {*chosen.channels_of(runs.vehicles[0])} <= {*twin.channels}:
+        return values
+    of_twin = on(twin)
+    assert of_twin.waves is not None  # as in the run
+    return Values(values.value, *paired(values.value, values.error, values.waves, of_twin.value, of_twin.waves))
 
 
 def require_unit(chosen: ChosenFigure, unit: str, units: Mapping[str, str]) -> None:

@@ -6,16 +6,15 @@ import numpy as np
 
 from vehicle.names import AXES, point_words
 from vehicle.runs.car import Run
+from vehicle.runs.car.class_value import class_values
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
+from vehicle.signals.analysis.comfort_error import NORMAL_95
 from vehicle.signals.analysis.evaluation import application, evaluate
-from vehicle.signals.analysis.ride_comfort import ERROR, RIM, UNWEIGHTED, WEIGHTED
+from vehicle.signals.analysis.ride_comfort import RIM, UNWEIGHTED, WEIGHTED
 from vehicle.signals.analysis.seat_value import SeatValue, seat_value
 from vehicle.signals.records.run_summary import ComfortSummary, RimSummary
 
 RAIL, SEAT = "seat_rail", "seat"
-
-NORMAL_95 = 1.96
-"""Standard errors in half of a 95 % interval; its coverage is measured in `docs/theory/statistics.md`."""
 
 NO_SEAT = (
     "comfort of the seat: the car has no seat, so 'seat' is a point on the body and there is no SEAT value; "
@@ -83,18 +82,26 @@ def _recorded(run: Run, point: str) -> bool:
     return all(f"{point}_acc_{axis}" in run.recording.channels for axis in AXES)
 
 
+def _over_class(run: Run) -> dict[str, dict[str, float]] | None:
+    """Return the comfort of the seat rail over roads of a class, from a road that does not repeat; None elsewhere."""
+    band = run.signal.band(COMFORT_BAND)
+    values = class_values(run.car, run.signal, run.recording, run.skip, run.road or {}, band)
+    return {name: value._asdict() for name, value in values.items()} or None
+
+
 def _at(run: Run, point: str) -> ComfortSummary:
     value = run.comfort(point)
     xyz = [run[f"{point}_acc_{axis}"][: run.evaluated.stop] for axis in AXES]
-    rms, slow, half = asdict(value.unweighted), run.signal.highest is not None, None
+    rms, slow, half, explained = asdict(value.unweighted), run.signal.highest is not None, None, None
     if (run.road or {}).get("class"):
-        half = {
-            name: NORMAL_95 * value.values[f"{name}{ERROR}"] * getattr(value, name).overall
-            for name in (UNWEIGHTED, WEIGHTED)
-        }
+        names = [f"{name}{end}" for name in (UNWEIGHTED, WEIGHTED) for end in ("", *(f"_{axis}" for axis in AXES))]
+        half = {name: NORMAL_95 * value.errors[name] * value.values[name] for name in names}
+        explained = {name: round(value.explained[name], 4) for name in names if name in value.explained} or None
     return ComfortSummary(
         rms_2_50_hz=dict.fromkeys(rms) if slow else rms,
         iso2631=evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest),
         rms_of_band={"band_hz": list(value.band), **rms} if slow else None,
         half_interval=half,
+        explained_by_linear_car=explained,
+        over_class=_over_class(run) if point == RAIL else None,
     )

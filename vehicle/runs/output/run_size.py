@@ -18,7 +18,7 @@ BESIDE, OF_SAMPLE = 0.35e9, 260.0
 """Memory of a run with its files [byte]: program, model and blocks; for each sample plates and an evaluation.
 
 Largest memory of runs of `focus_road` at 1 kHz on four plates, with libraries and pages of the file in memory, and
-`run_memory` [GB], all 61 channels unless said: 600 s, h5 without pictures 0.35 and 0.51; 600 s, all 183 channels with
+`run_memory` [GB], with all 61 channels: 600 s, h5 without pictures 0.35 and 0.51; 600 s, 183 channels with
 loads 0.48 and 0.51; 1200 s with pictures and report 0.58 and 0.66; an hour, h5 without them 1.12, with them 1.23, and
 1.29; MuJoCo, 150 s 0.38 and 0.47.
 """

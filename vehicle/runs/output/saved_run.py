@@ -12,6 +12,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.leftovers import mention
 from vehicle.names import in_order
 from vehicle.runs.car import Car, Run
+from vehicle.runs.car.run_twin import repeats_after
 from vehicle.runs.output.folder import output_folder
 from vehicle.runs.output.run_files import write_run
 from vehicle.signals.excitation.signal import Signal
@@ -103,6 +104,7 @@ def recorded_signal(summary: RunSummary, recording: Recording) -> Signal:
         source=excitation.file,
         sha256=excitation.sha256,
         highest=excitation.highest_hz,
+        repeats_after=repeats_after(excitation.road),
     )
 
 

@@ -4,14 +4,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from scipy.special import stdtrit
-
 from vehicle.names import AXES
+from vehicle.runs.figures.chosen_figure import ChosenFigure
+from vehicle.runs.figures.value import values_of
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import POINT
-from vehicle.signals.analysis.comfort_error import WAVES, difference_error
-from vehicle.signals.analysis.ride_comfort import WEIGHTED, comfort_columns, wave_names
+from vehicle.signals.analysis.comfort_error import STUDENT_95, difference_error
+from vehicle.signals.analysis.ride_comfort import WEIGHTED
 
 
 def input_text(run: FinishedRun) -> str:
@@ -60,7 +59,8 @@ def change_half_width(first: FinishedRun, run: FinishedRun) -> float | None:
     """Return half of the 95 % interval of the change of the weighted acceleration at the seat rail [%].
 
     The error is that of two cars on the same random road, `vehicle.signals.analysis.comfort_error.difference_error`,
-    times t_0.975 with 2 `WAVES` degrees of freedom, over the value of the first run.
+    times t_0.975 with 2 `WAVES` degrees of freedom, over the value of the first run. On a road that repeats, the waves
+    are those that the linear twin of each car does not explain.
 
     Args:
         first, run: runs.
@@ -68,18 +68,13 @@ def change_half_width(first: FinishedRun, run: FinishedRun) -> float | None:
     Returns:
         The half width; None unless both drive on the same random road, with the same seed and the same evaluated span.
     """
-    road, names = first.summary.input.road or {}, [f"{POINT}_acc_{axis}" for axis in AXES]
-    roads = [_same_for_both(each) for each in (first, run)]
+    names = [f"{POINT}_acc_{axis}" for axis in AXES]
     recorded = all(name in each.recording.channels for each in (first, run) for name in names)
-    if not (road.get("class") or road.get("profile")) or roads[0] != roads[1] or not recorded:
+    if not first.runs.random or _same_for_both(first) != _same_for_both(run) or not recorded:
         return None
-    values = []
-    for each in (first, run):
-        rail = np.stack([each.recording.channels[name] for name in names])[None]
-        values.append(comfort_columns(each.recording.timestep, rail, skip=each.skip, names=(WEIGHTED,)))
-    waves = np.array([[float(columns[name][0]) for name in wave_names(WEIGHTED)] for columns in values])
-    error = difference_error(*(waves[:, 0::2] + 1j * waves[:, 1::2]))
-    return 100.0 * float(stdtrit(2 * WAVES, 0.975) * error / values[0][WEIGHTED][0])
+    before, after = (values_of(ChosenFigure(quantity=WEIGHTED), each.runs) for each in (first, run))
+    assert before.waves is not None and after.waves is not None  # a comfort value on a random road
+    return 100.0 * float(STUDENT_95 * difference_error(before.waves, after.waves)[0] / before.value[0])
 
 
 def _same_for_both(run: FinishedRun) -> tuple[object, ...]:

@@ -24,6 +24,7 @@ from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import named, templates
 from vehicle.runs.report.order_words import force_rows
 from vehicle.runs.report.svg_figure import drawing
+from vehicle.signals.records.run_summary import interval_words
 
 fill = templates(__file__)
 
@@ -250,7 +251,7 @@ def comfort(run: FinishedRun, bands: Markup = NO_FIGURE) -> Markup:
                 unweighted,
             )
         )
-        reasons = [*iso.reasons, *(["±: 95 % interval over roads of this class"] if half else [])]
+        reasons = [*iso.reasons, *([interval_words(run.summary, value)] if half else [])]
         span = f", {run.span} of the run" if run.span else ""
         caption = f"{point_words(point).capitalize()}, {iso.standard}{span}"
         points.append((caption, low, high, rows, reasons))

@@ -4,6 +4,7 @@ import math
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from importlib import resources
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.toml_file import build, read_table
 from vehicle.runs.car import Car
+from vehicle.runs.car.run_twin import last_period, repeats_after
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.runs.figures.value import require_unit, values_of
 from vehicle.runs.targets.target import Target
@@ -80,11 +82,12 @@ class RatedRun:
         overrides = self.summary.vehicle.overrides
         return [text for text in overrides if not text.startswith("driving.speed=") and "one_sided=" not in text]
 
-    @property
+    @cached_property
     def runs(self) -> Runs:
         """Time histories and static data for the figures."""
         recording = self.recording
         road, obstacle = self.summary.input.road or {}, self.summary.obstacle
+        plates = {wheel: recording[f"plate_{wheel}_displacement"] for wheel in recording.excited}
         return Runs(
             time=recording.time,
             channels={name: history[None] for name, history in recording.channels.items()},
@@ -95,6 +98,7 @@ class RatedRun:
             cars=(self.car,),
             skip=self.skip,
             band=self.summary.comfort_band,
+            period=last_period(plates, recording.timestep, repeats_after(road)),
         )
 
     def value_of(self, target: Target) -> tuple[float, float | None]:

@@ -45,6 +45,8 @@ class ComfortValues:
     """normalised standard error of `overall`, see `vehicle.signals.analysis.comfort_error` [-], shape (r,)"""
     waves: Complex
     """slow variations of `overall`, see `vehicle.signals.analysis.comfort_error` [m/s2], shape (r, WAVES)"""
+    lines: Complex
+    """lines of the periodogram in the band, |line|^2 = S df; shape (r, 3, m)"""
 
 
 def comfort_values(
@@ -73,7 +75,11 @@ def comfort_values(
     assert spectrum.lines is not None  # a periodogram
     lines = spectrum.lines.reshape(*axes.shape, -1)
     return ComfortValues(
-        axes=axes, overall=np.sqrt(x * x + y * y + z * z), error=overall_error(lines), waves=overall_waves(lines)
+        axes=axes,
+        overall=np.sqrt(x * x + y * y + z * z),
+        error=overall_error(lines),
+        waves=overall_waves(lines),
+        lines=lines,
     )
 
 

@@ -23,13 +23,25 @@ is the Fourier line at m/T of the instantaneous mean square over 2 rms. Its spec
 the variance of the mean. The first `WAVES` are stored with each run, and mean |C_m,a - C_m,b|^2 is the variance of
 rms_a - rms_b with two degrees of freedom for each m.
 
+On a road that repeats after the evaluated span, the value of a linear car is the same for all phases, so what a run
+differs by is what its linear twin on the same road does not explain (a control variate). With the twin's value and
+waves, W' and C'_m, the waves that are left are
+
+    R_m = C_m - (rms / rms') C'_m,
+
+and mean |R_m|^2 is the variance of the value over roads of the class (`paired`), mean |R_m,a - R_m,b|^2 that of a
+difference.
+
 Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and Welch, Communications of the ACM 24
-(1981): variance of a mean from the spectrum near zero frequency.
+(1981): variance of a mean from the spectrum near zero frequency; Ripley, Stochastic Simulation (1987), section 5.3:
+control variates.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+from scipy.special import stdtrit
 
 from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.analysis.spectra import lines_of_band, record_lines
@@ -37,6 +49,62 @@ from vehicle.signals.analysis.spectra import lines_of_band, record_lines
 WAVES = 3
 """Number of stored C_m. They reach 3/T, 0.4 Hz for 8 s: about the half-power bandwidth of the modes from 2 Hz on. With
 6 it is 0.75 Hz, and the error of a difference in records of 8 s is a third too small (`tests.benchmarks.coverage`)."""
+
+NORMAL_95 = 1.96
+"""Standard errors in half of a 95 % interval; its coverage is measured in `docs/theory/statistics.md`."""
+
+STUDENT_95 = float(stdtrit(2 * WAVES, 0.975))
+"""The same for an error that is itself estimated with 2 `WAVES` degrees of freedom."""
+
+WIDENED = float(np.sqrt(2 * WAVES / (2 * WAVES - 1)) * stdtrit(2 * WAVES - 1, 0.975)) / STUDENT_95
+"""Factor on waves from which one degree of freedom is taken by a fit: then `STUDENT_95` fits them too."""
+
+LEAST_EXPLAINED = 0.5
+"""Minimum share of the scatter that the twin must explain. Below it, the run and its twin are two different cars, and
+the error of the run alone counts."""
+
+
+class Paired(NamedTuple):
+    """Error of values of which the linear twin on the same road is known; (r,) each, waves (r, `WAVES`).
+
+    Attributes:
+        error: standard error, see `wave_error`; of the run alone where the twin explains less than half.
+        waves: waves R_m that the twin does not explain.
+        explained: share of the scatter that the twin explains, 1 - sum |R_m|^2 / sum |C_m|^2 [-]; NaN without a twin.
+    """
+
+    error: Vector
+    waves: Complex
+    explained: Vector
+
+
+def wave_error(waves: Complex) -> Vector:
+    """Return the standard error of values from their waves, (r, `WAVES`), in the unit of the waves; (r,).
+
+    The estimate has 2 `WAVES` degrees of freedom. It is widened, so that `NORMAL_95` errors are the half width of the
+    95 % interval of Student's t.
+    """
+    return np.asarray(STUDENT_95 / NORMAL_95 * np.sqrt(np.mean(np.abs(waves) ** 2, axis=1)))
+
+
+def paired(value: Vector, error: Vector, waves: Complex, twin_value: Vector, twin_waves: Complex) -> Paired:
+    """Return the error of values with their linear twins, see `Paired`.
+
+    Args:
+        value, error: values of r runs and their standard errors without twins, in one unit; (r,).
+        waves: C_m of the runs; (r, WAVES).
+        twin_value, twin_waves: the same of the twins; 0 without a twin.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factor = np.sum((twin_waves.conj() * waves).real, axis=1) / np.sum(np.abs(twin_waves) ** 2, axis=1)
+        residual = waves - factor[:, None] * twin_waves
+        explained = 1.0 - np.sum(np.abs(residual) ** 2, axis=1) / np.sum(np.abs(waves) ** 2, axis=1)
+    defined = np.isfinite(explained)
+    return Paired(
+        error=np.where(defined & (explained >= LEAST_EXPLAINED), wave_error(WIDENED * residual), error),
+        waves=np.where(defined[:, None], WIDENED * residual, waves),
+        explained=explained,
+    )
 
 
 def weighted_lines(time_step: float, weighted: Vector, factors: Sequence[float]) -> Complex:

@@ -7,14 +7,14 @@ chapter 4); `weighted` is the RMS after the weightings of a seat, Wd for x and y
 """
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND, comfort_values
-from vehicle.signals.analysis.comfort_error import WAVES, overall_error, overall_waves, weighted_lines
+from vehicle.signals.analysis.comfort_error import WAVES, overall_error, overall_waves, paired, weighted_lines
 from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.exposure import vector_sum, weighted_rms
@@ -34,6 +34,9 @@ ISO_2631 = "ISO 2631-1"
 
 ERROR = "_error"
 """Suffix of the relative standard error of `unweighted` or `weighted`, see `vehicle.signals.analysis.comfort_error`."""
+
+EXPLAINED = "_explained"
+"""Suffix of the share of the scatter that the linear twin explains, see `vehicle.signals.analysis.comfort_error`."""
 
 
 def wave_names(name: str) -> tuple[str, ...]:
@@ -74,6 +77,7 @@ def comfort_columns(
     names: Collection[str] = (UNWEIGHTED, WEIGHTED),
     contact: str = "seat",
     errors: bool = True,
+    axes: bool = False,
 ) -> dict[str, Vector]:
     """Return the comfort values of r runs; the values of a run are bitwise independent of the other runs.
 
@@ -86,6 +90,7 @@ def comfort_columns(
         names: `UNWEIGHTED`, `WEIGHTED` or both.
         contact: point of contact at `rail`, see `vehicle.signals.analysis.evaluation`.
         errors: False leaves out the standard errors and `wave_names`.
+        axes: add the standard errors and `wave_names` of each axis.
 
     Returns:
         Name to values, (r,) each: those of `comfort_units` with these names, and their `wave_names`. `seat_value` is
@@ -93,7 +98,7 @@ def comfort_columns(
     """
     end = evaluated_span(rail.shape[2], time_step, skip).stop
     rail = rail[:, :, :end]
-    columns = _point(time_step, rail, skip, band, names, contact, errors)
+    columns = _point(time_step, rail, skip, band, names, contact, errors, axes)
     if cushion is not None:
         cushion = cushion[:, :, :end]
         on_seat = {
@@ -119,6 +124,7 @@ def _point(
     names: Collection[str],
     contact: str = "seat",
     errors: bool = True,
+    axes: bool = False,
 ) -> dict[str, Vector]:
     """Return the values at one point."""
     columns: dict[str, Vector] = {}
@@ -128,20 +134,57 @@ def _point(
         columns[UNWEIGHTED] = value.overall
         if errors:
             columns |= _errors(UNWEIGHTED, value.error, value.waves)
+        if axes:
+            columns |= _axis_errors(UNWEIGHTED, value.lines)
     if WEIGHTED in names:
-        factors, rms, pairs = application(contact).comfort_factors, [], []
+        factors, rms, lines = application(contact).comfort_factors, [], []
         for xyz in records:
             rows = weighted_axes(time_step, xyz, contact=contact, skip=skip)
-            axes = [weighted_rms(row) for row in rows]
-            rms.append((*axes, vector_sum(axes, factors)))
-            if errors:
-                lines = weighted_lines(time_step, rows, factors)[None]
-                pairs.append((overall_error(lines), overall_waves(lines)))
+            each = [weighted_rms(row) for row in rows]
+            rms.append((*each, vector_sum(each, factors)))
+            if errors or axes:
+                lines.append(weighted_lines(time_step, rows, (1.0, 1.0, 1.0)))
         columns |= {f"{WEIGHTED}_{axis}": values for axis, values in zip(AXES, np.array(rms).T, strict=False)}
         columns[WEIGHTED] = np.array(rms)[:, 3]
         if errors:
-            columns |= _errors(WEIGHTED, *map(np.concatenate, zip(*pairs, strict=True)))
+            all_axes = (np.array(factors)[:, None] * each[None] for each in lines)
+            of_runs = [(overall_error(each)[0], overall_waves(each)[0]) for each in all_axes]
+            columns |= _errors(WEIGHTED, *map(np.array, zip(*of_runs, strict=True)))
+        if axes:
+            columns |= _axis_errors(WEIGHTED, np.array(lines))
     return columns
+
+
+def _axis_errors(name: str, lines: Complex) -> dict[str, Vector]:
+    """Return errors and waves of the axes of a comfort value as columns; lines: (r, 3, m)."""
+    columns: dict[str, Vector] = {}
+    for number, axis in enumerate(AXES):
+        row = lines[:, number : number + 1]
+        columns |= _errors(f"{name}_{axis}", overall_error(row), overall_waves(row))
+    return columns
+
+
+def with_twins(columns: Mapping[str, Vector], twins: Mapping[str, Vector]) -> dict[str, Vector]:
+    """Return comfort values of runs with the errors that their linear twins leave, and the `EXPLAINED` shares.
+
+    Args:
+        columns: values of `comfort_columns`.
+        twins: values of the twins.
+    """
+    result = dict(columns)
+    for name in (column.removesuffix(ERROR) for column in columns if column.endswith(ERROR)):
+        value, error = columns[name], columns[f"{name}{ERROR}"]
+        waves, of_twins = (waves_of(each, name) for each in (columns, twins))
+        pair = paired(value, error * value, waves, twins[name], of_twins)
+        relative = np.divide(pair.error, value, out=np.zeros_like(value), where=value > 0.0)
+        result |= _errors(name, relative, pair.waves) | {f"{name}{EXPLAINED}": pair.explained}
+    return result
+
+
+def waves_of(columns: Mapping[str, Vector], name: str) -> Complex:
+    """Return the C_m of a comfort value from its columns; (r, `WAVES`)."""
+    parts = np.stack([columns[each] for each in wave_names(name)], axis=1)
+    return np.asarray(np.ascontiguousarray(parts, dtype=np.float64).view(np.complex128))
 
 
 def _errors(name: str, error: Vector, waves: Complex) -> dict[str, Vector]:
@@ -197,11 +240,15 @@ class RunComfort(PointComfort):
         cushion: both values on the cushion; None for a car without a seat.
         seat_value: SEAT value [-]; None for a car without a seat, or a rail at rest.
         values: all values under their names in sweeps and searches, see `comfort_units`.
+        errors: relative standard errors of values and axes [-], by the names "weighted", "weighted_x" and so on.
+        explained: share of the scatter that the linear twin explains [-], by the same names; empty without a twin.
     """
 
     cushion: PointComfort | None
     seat_value: float | None
     values: Mapping[str, float]
+    errors: Mapping[str, float]
+    explained: Mapping[str, float]
 
     def __repr__(self) -> str:
         """Return a summary in one line."""
@@ -231,12 +278,13 @@ def point_comfort(point: str, values: Mapping[str, float], band: tuple[float, fl
 def run_comfort(
     time_step: float,
     rail: Vector,
-    cushion: Vector | None,
+    cushion: Vector | None = None,
     *,
     skip: float,
     band: tuple[float, float],
     point: str = "seat rail",
     contact: str = "seat",
+    twin: Sequence[Vector] | None = None,
 ) -> RunComfort:
     """Return the comfort of one run; arguments as in `comfort_columns`, with accelerations of (3, n).
 
@@ -246,9 +294,20 @@ def run_comfort(
         cushion: accelerations of the cushion [m/s2], (3, n), or None.
         point: words of the point of `rail`.
         contact: point of contact there, see `comfort_columns`.
+        twin: accelerations of the linear twin at the rail, and on the cushion if given; None without a twin.
     """
-    above = None if cushion is None else cushion[None]
-    columns = comfort_columns(time_step, rail[None], above, skip=skip, band=band, contact=contact)
+
+    def of(rail: Vector, cushion: Vector | None = None) -> dict[str, Vector]:
+        above = None if cushion is None else cushion[None]
+        return comfort_columns(time_step, rail[None], above, skip=skip, band=band, contact=contact, axes=True)
+
+    columns = of(rail, cushion)
+    if twin is not None:
+        columns = with_twins(columns, of(*twin))
+    errors, explained = (
+        {name.removesuffix(suffix): float(column[0]) for name, column in columns.items() if name.endswith(suffix)}
+        for suffix in (ERROR, EXPLAINED)
+    )
     values = {name: float(columns[name][0]) for name in comfort_units(seated=cushion is not None)}
     at_rail = point_comfort(point, values, band)
     seat = values.get(SEAT_VALUE, math.nan)
@@ -261,4 +320,6 @@ def run_comfort(
         cushion=None if cushion is None else point_comfort("cushion", values, band, SEAT_PREFIX),
         seat_value=None if math.isnan(seat) else seat,
         values=values,
+        errors=errors,
+        explained=explained,
     )

@@ -211,7 +211,9 @@ class RoadDrive:
         if isinstance(road, IsoRoad) or not self.random:
             obstacle = self.obstacle
             left = None if obstacle is None else self._times(obstacle)[1]
-            return replace(signal, random=self.random, left_obstacle=left, notices=self.notices)
+            return replace(
+                signal, random=self.random, left_obstacle=left, notices=self.notices, repeats_after=self.span
+            )
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
 
     def _road(self) -> tuple[IsoRoad | MeasuredRoad, float]:

@@ -71,6 +71,7 @@ class Signal:
             the tyre takes; for pictures only, by default for no wheel.
         random: False for one event, as a bump, or a level road: its values have no standard error.
         left_obstacle: time at which the last wheel leaves an obstacle [s]; None for another input.
+        repeats_after: period of a road of a class that repeats after the evaluated span [s]; None for another input.
     """
 
     time: Vector
@@ -83,6 +84,7 @@ class Signal:
     profile: Mapping[str, Vector] = field(default_factory=dict)
     random: bool = True
     left_obstacle: float | None = None
+    repeats_after: float | None = None
 
     def __repr__(self) -> str:
         """Return source, length and wheels in a line."""

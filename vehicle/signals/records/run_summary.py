@@ -5,8 +5,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.analysis.comfort_error import LEAST_EXPLAINED
 from vehicle.signals.analysis.contact_vibration import ContactVibration
 from vehicle.signals.analysis.seat_value import SeatValue
 from vehicle.stored import Stored, omitted
@@ -72,13 +74,19 @@ class ComfortSummary(Stored):
     """Comfort at one output point; `iso2631` is the result of `analysis.evaluation.evaluate`.
 
     `rms_of_band` replaces `rms_2_50_hz`, then null, where the band of the signal ends below 50 Hz. `half_interval`:
-    half of the 95 % interval of both overall values over roads of a class [m/s2], for a run on one of them.
+    half of the 95 % interval over roads of a class [m/s2], of both overall values and of each axis ("weighted_x").
+    `explained_by_linear_car`: share of the scatter over these roads that the linear car on the same road explains [-],
+    by the same names, on a road that repeats after the evaluated span. `over_class`: on another road of a class,
+    "unweighted" and "weighted" over all roads of the class, corrected by the linear car: `value` and `half_interval`
+    [m/s2], `explained` [-].
     """
 
     rms_2_50_hz: dict[str, float | None]
     iso2631: ContactVibration
     rms_of_band: dict[str, Any] | None = omitted()
     half_interval: dict[str, float] | None = omitted()
+    explained_by_linear_car: dict[str, float] | None = omitted()
+    over_class: dict[str, dict[str, float]] | None = omitted()
 
     @property
     def weighted(self) -> float:
@@ -324,3 +332,14 @@ def available_summary(folder: Path) -> RunSummary | None:
         return read_summary(folder)
     except (ConfigurationError, DataError):
         return None
+
+
+def interval_words(summary: RunSummary, comfort: ComfortSummary) -> str:
+    """Return the meaning of the intervals of comfort on a road of a class."""
+    text = f"±: 95 % interval over roads of class {(summary.input.road or {}).get('class')}"
+    share = (comfort.explained_by_linear_car or {}).get("weighted")
+    if share is None:
+        return text
+    if share < LEAST_EXPLAINED:
+        return f"{text}, of the run alone: the linear car on the same road explains less than half of the scatter"
+    return f"{text}; the linear car on the same road explains {number(100.0 * share)} % of the scatter"

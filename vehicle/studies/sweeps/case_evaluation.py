@@ -21,6 +21,7 @@ from vehicle.errors import SimulationError, VehicleError
 from vehicle.model.parameters.force_elements import LIFTS
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car, Run
+from vehicle.runs.car.run_twin import damper_channels, signal_period
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Case, signal_of
@@ -138,12 +139,22 @@ def _single(case: Case, measure: Measure, engine: str | None = None) -> Result:
     started = clock.perf_counter()
     try:
         with _ONE_AT_A_TIME:
-            run = run_of(replace(case, engine=engine or case.engine), measure.channels)
+            more = _for_twin(measure, loaded_car(case).vehicle, signal_of(case.source))
+            names = None if measure.channels is None else (*measure.channels, *more)
+            run = run_of(replace(case, engine=engine or case.engine), names)
         with _lock_of(measure):
             values = _checked({name: float(value) for name, value in measure(run).items()})
     except OF_A_RUN as error:
         return _failed(error, started)
     return Result(values=values, engine=run.recording.statistics.engine, seconds=clock.perf_counter() - started)
+
+
+def _for_twin(measure: Measure, vehicle: Vehicle, signal: Signal) -> tuple[str, ...]:
+    """Return the further channels of a run for the error by its twin; none without this error."""
+    names, errors = measure.channels, getattr(measure, "errors", True)
+    if not names or not errors or signal_period(signal) is None:
+        return ()
+    return tuple(name for name in damper_channels(vehicle) if name not in names)
 
 
 def _estimated(case: Case, measure: EstimateMeasure) -> Result:
@@ -171,19 +182,20 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
     started = clock.perf_counter()
     finished: dict[int, Result | None] = {}
     cars: dict[int, Car] = {}
-    groups: dict[Hashable, list[int]] = {}
+    groups: dict[tuple[tuple[str, ...], *tuple[Hashable, ...]], list[int]] = {}
     for number, case in enumerate(cases):
         try:
             cars[number], signal = _car_of(case), signal_of(case.source)
             _require(cars[number].vehicle, signal, measure)
+            more = _for_twin(measure, cars[number].vehicle, signal)
         except OF_A_RUN as error:
             finished[number] = _failed(error)
             continue
-        groups.setdefault((case.source, case.engine, batch_key(cars[number])), []).append(number)
-    for group in groups.values():
+        groups.setdefault((more, case.source, case.engine, batch_key(cars[number])), []).append(number)
+    for (more, *_), group in groups.items():
         case, rate = cases[group[0]], cars[group[0]].vehicle.solver.record_rate
         signal = signal_of(case.source)
-        size = cars_at_once(signal.duration * rate, len(measure.channels))
+        size = cars_at_once(signal.duration * rate, len((*measure.channels, *more)))
         for first in range(0, len(group), size):
             batch = group[first : first + size]
             accept = case.engine == "reduced"
@@ -230,7 +242,8 @@ def measured_batch(
         accept_invalid: keep runs outside the valid range of the reduced engine; otherwise their result is None.
     """
     try:
-        simulated = _simulated(cars, signal, measure.channels, measure.timestep)
+        names = (*measure.channels, *_for_twin(measure, cars[0].vehicle, signal))
+        simulated = _simulated(cars, signal, names, measure.timestep)
     except OF_A_RUN as error:
         return _retry_each(
             cars, error, lambda car: measured_batch([car], signal, measure, accept_invalid=accept_invalid)[0]
@@ -265,6 +278,7 @@ def _measured(
         random=signal.random,
         left_obstacle=signal.left_obstacle,
         cars=tuple(cars[row] for row in rows),
+        period=signal_period(signal),
     )
     try:
         with _lock_of(measure):

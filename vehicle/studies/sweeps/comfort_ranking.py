@@ -87,12 +87,11 @@ def _cars_part(cars: RankedCars) -> Part:
     heads += [] if cars.seat_value is None else [f"{SEAT_VALUE} [-]"]
     rows = []
     for car in cars.order:
-        change = cars.change(car)
         rows.append(
             [
                 *cars.cells[car],
                 number(cars.weighted[car], 4),
-                "base" if car == 0 else f"{change:+.2f}" if math.isfinite(change) else "–",
+                "base" if car == 0 else cars.change_cell(car) if math.isfinite(cars.change(car)) else "–",
                 *([number(cars.half_width[car] or None, 2).replace("nan", "–")] if with_errors else []),
                 number(cars.unweighted[car], 4),
                 *([] if cars.seat_value is None else [number(cars.seat_value[car], 4)]),

@@ -2,10 +2,11 @@
 
 The values are the unweighted one, and after it the weighted one by which the cars are ranked. All cars drive on the
 same road, so the random errors of their comfort values are correlated, and the error of a difference
-(`vehicle.signals.analysis.comfort_error`) is far below the errors of both values. It is the standard error over
-Gaussian roads of the class; one event, e.g. an obstacle, has none. Seeds of a generated road, whose lines have fixed
-amplitudes, scatter less. For a road with two or more seeds the mean over the seeds is also given, with the error
-estimated from the scatter.
+(`vehicle.signals.analysis.comfort_error`) is far below the errors of both values. On a road that repeats after the
+evaluated span it is what the linear twins of both cars leave. On another road it is the standard error over Gaussian
+roads of the class; seeds of such a generated road, whose lines have fixed amplitudes, scatter less. One event, e.g. an
+obstacle, has none. For a road with two or more seeds the mean over the seeds is also given, with the error estimated
+from the scatter.
 """
 
 import math
@@ -17,7 +18,7 @@ from typing import TextIO
 import numpy as np
 from scipy.special import stdtrit
 
-from vehicle.signals.analysis.comfort_error import WAVES, difference_error
+from vehicle.signals.analysis.comfort_error import STUDENT_95, WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, wave_names
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.signals.formats.csv_table import RowWriter
@@ -30,9 +31,10 @@ from vehicle.studies.sweeps.sweep_table import SweepTable
 DIFFERENCES = "differences.csv"
 """Name of the file in the folder of a sweep."""
 
-CLASS, SEEDS = "Gaussian roads of this class", "seeds of the generated road"
+REPEATING, CLASS, SEEDS = "roads of this class", "Gaussian roads of this class", "seeds of the generated road"
 RECORDS, EVENT = "Gaussian records with this spectrum", "one event: no random error"
-"""Populations for which an error is stated: of a road, of its seeds, of a file; and an input without an error."""
+"""Populations for which an error is stated: of a road that repeats, of another road, of its seeds, of a file; and an
+input without an error."""
 
 HEADS = (
     "{} [m/s2]",
@@ -80,7 +82,7 @@ class DifferencesWriter:
                  for name in names for head in HEADS]  # fmt: skip
         self._writer = RowWriter(file)
         self._writer.writerow(["input", *paths, "cars differ on", *heads])
-        self._factor = float(stdtrit(2 * WAVES, 0.975))
+        self._factor = STUDENT_95
         self._first: dict[Input, Numbers] = {}
         self._seeds: dict[str, dict[tuple[str, ...], tuple[Sequence[str], list[Numbers]]]] = {}
         self._source: Input | None = None
@@ -103,7 +105,9 @@ class DifferencesWriter:
             self._base = self._first.setdefault(case.source, numbers)
             if isinstance(case.source, RoadDrive) and case.source.tagged:
                 self._road = replace(case.source, tagged=False).name
-        by_source = CLASS if isinstance(case.source, RoadDrive) else RECORDS
+        by_source = RECORDS
+        if isinstance(case.source, RoadDrive):
+            by_source = CLASS if case.source.span is None else REPEATING
         population = EVENT if is_event(row, UNWEIGHTED) else by_source
         self._waiting.append((case.source.name, parameters, population, numbers, self._base))
         if self._road:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.digits import aligned, number
+from vehicle.digits import aligned, decimals, number
 from vehicle.drawing.rendering.tornado_plot import draw_tornado, plot_tornado
 from vehicle.runs.report.differences import parameter_words
 from vehicle.signals.formats.csv_table import RowWriter
@@ -177,10 +177,10 @@ def effect_lines(effects: Effects) -> list[str]:
             f"{number(each.value, 4)} {each.unit}",
             *([each.step] if len(steps) > 1 else []),
             *(
-                f"{change:+.2f} %" if math.isfinite(change) else "no value"
+                f"{change:+.{decimals(each.half_width)}f} %" if math.isfinite(change) else "no value"
                 for change in (each.change_low, each.change_high)
             ),
-            f"{each.half_width:.2f}" if math.isfinite(each.half_width) else "-",
+            f"{each.half_width:.{decimals(each.half_width)}f}" if math.isfinite(each.half_width) else "-",
             *([each.mark] if marked else []),
         ]
         for each in effects.shown

@@ -20,7 +20,7 @@ from vehicle.runs.figures.chosen_figure import ChosenFigure, chosen_figure
 from vehicle.runs.figures.run_batch import Runs, single
 from vehicle.runs.figures.turning_figures import ORDER_FREQUENCY
 from vehicle.runs.figures.value import values_of
-from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfort_units, wave_names
+from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfort_units, wave_names, with_twins
 from vehicle.studies.sweeps.function_measure import FunctionMeasure, NamedFunctions, RunFunction
 
 
@@ -113,7 +113,7 @@ class FigureMeasure:
         runs = replace(runs, skip=self.skip, errors=self.errors, random=runs.random and self.random)
         columns: dict[str, Vector] = {}
         for name, chosen in self.figures:
-            value, error, waves = values_of(chosen, runs)
+            value, error, waves, _ = values_of(chosen, runs)
             columns[name] = np.where(np.isinf(value), np.nan, value)
             if not self.errors or chosen.figure.exact:
                 continue
@@ -234,14 +234,23 @@ class ComfortMeasure:
         `damper.slip_velocity`, the saturated share is above 1 mm/s. The first slip refers to the whole run, as in
         `summary.json`; NaN without slip.
         """
+        runs = replace(runs, skip=self.skip)
+        # The waves are not in `units`, so in no table: they are for the error of the difference of two cars.
+        numbers = self._comfort(runs)
+        if not runs.random:
+            none = np.full(len(runs.vehicles), np.nan)
+            numbers |= dict.fromkeys((name for name in numbers if "_error" in name or "_wave_" in name), none)
+        elif (twin := runs.twin) is not None:
+            paired = with_twins(numbers, self._comfort(twin))
+            numbers = {name: paired[name] for name in numbers}
+        runs = replace(runs, errors=False)
+        return numbers | {slip.column: values_of(slip, runs).value for slip in self._slips}
+
+    def _comfort(self, runs: Runs) -> dict[str, Vector]:
+        """Return the comfort values of runs."""
         rail = runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))
         cushion = runs.stacked(*(f"seat_acc_{axis}" for axis in AXES)) if self.seat else None
-        # The waves are not in `units`, so in no table: they are for the error of the difference of two cars.
-        numbers = comfort_columns(runs.timestep, rail, cushion, skip=self.skip)
-        if not runs.random:
-            numbers |= {name: np.full(len(rail), np.nan) for name in numbers if "_error" in name or "_wave_" in name}
-        runs = replace(runs, skip=self.skip, errors=False)
-        return numbers | {slip.column: values_of(slip, runs).value for slip in self._slips}
+        return comfort_columns(runs.timestep, rail, cushion, skip=runs.skip)
 
 
 def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.digits import aligned
+from vehicle.digits import aligned, decimals
 from vehicle.digits import number as number_text
 from vehicle.errors import DataError
 from vehicle.model.parameters.parameter_list import value_text
@@ -140,7 +140,18 @@ class RankedCars:
     def change_text(self, car: int) -> str:
         """Return the change from the first car [%] with its half-width, e.g. "-2.1 +- 0.4"; without one, "-2.10"."""
         width = self.half_width[car]
-        return f"{self.change(car):+.2f}" + (f" +- {number_text(width, 2)}" if math.isfinite(width) else "")
+        error = f" +- {number_text(width, 2)}" if math.isfinite(width) else ""
+        return f"{self.change(car):+.{decimals(width)}f}{error}"
+
+    def change_cell(self, car: int, unit: str = "") -> str:
+        """Return the change from the first car [%] for a table, with the digits of its half-width."""
+        change = self.change(car)
+        return f"{change:+.{decimals(self.half_width[car])}f}{unit}" if math.isfinite(change) else "-"
+
+    def half_width_cell(self, car: int) -> str:
+        """Return the half-width of a change [%] for a table."""
+        width = self.half_width[car]
+        return f"{width:.{decimals(width)}f}" if width > 0.0 else "-"
 
     def headings(self, name_of: Callable[[str], str] = str) -> list[str]:
         """Return the varied parameters with their units; `name_of` returns the name of a path."""
@@ -244,8 +255,8 @@ def ranking_lines(cars: RankedCars) -> list[str]:
         [
             *cars.cells[car],
             f"{cars.weighted[car]:.4g}",
-            "base" if car == 0 else f"{cars.change(car):+.2f} %" if math.isfinite(cars.change(car)) else "-",
-            *([f"{cars.half_width[car]:.2f}" if cars.half_width[car] > 0.0 else "-"] if with_errors else []),
+            "base" if car == 0 else cars.change_cell(car, " %"),
+            *([cars.half_width_cell(car)] if with_errors else []),
             f"{cars.unweighted[car]:.4g}",
             *([] if cars.seat_value is None else [f"{cars.seat_value[car]:.4g}"]),
         ]

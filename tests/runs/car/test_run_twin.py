@@ -1,0 +1,117 @@
+"""Errors of a run on a road that repeats: from its linear twin, in Python, summary, saved run, report and sweep."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from vehicle import Car, load_run, road, sweep
+from vehicle.runs.car.run import Run
+from vehicle.runs.car.run_twin import signal_period, twin_channels
+from vehicle.runs.figures.chosen_figure import chosen_figure
+from vehicle.runs.figures.run_batch import evaluated
+from vehicle.runs.figures.value import values_of
+from vehicle.runs.output.run_comfort import comfort_values
+from vehicle.runs.report.finished_run import read_run
+from vehicle.runs.report.run_input import change_half_width
+from vehicle.signals.analysis.comfort_error import STUDENT_95, difference_error
+from vehicle.signals.analysis.ride_comfort import waves_of
+
+DURATION = 8.0
+
+
+def drive(car: Car, **settings: Any) -> Run:
+    """Return a run of 6 s after the lead-in on class B at 80 km/h."""
+    return car.run(road("B", 80, duration=DURATION, **settings), engine="reduced")
+
+
+@pytest.fixture(scope="module")
+def car() -> Car:
+    return Car.load("sedan")
+
+
+@pytest.fixture(scope="module")
+def run(car: Car) -> Run:
+    return drive(car)
+
+
+def test_the_twin_explains_nearly_all_of_the_scatter(run: Run):
+    comfort = run.comfort()
+    assert {*comfort.explained} == {
+        f"{name}{axis}" for name in ("unweighted", "weighted") for axis in ("", "_x", "_y", "_z")
+    }
+    # Waves from side to side are a small part: there, friction matters more.
+    assert all(share > 0.9 for name, share in comfort.explained.items() if not name.endswith("_y"))
+    # The interval of the run alone is +- 8 to 10 %.
+    assert all(0.001 < comfort.errors[name] < 0.01 for name in ("unweighted", "weighted"))
+    stored = comfort_values(run)["seat_rail"]
+    assert stored.half_interval is not None and stored.explained_by_linear_car is not None
+    for name in ("weighted", "weighted_z"):
+        assert stored.half_interval[name] == pytest.approx(1.96 * comfort.errors[name] * comfort.values[name])
+        assert stored.explained_by_linear_car[name] == pytest.approx(comfort.explained[name], abs=5e-5)
+
+
+def test_other_roads_and_spans_have_the_error_of_the_run_alone(car: Car, run: Run):
+    others = [
+        drive(car, period="record"),
+        drive(car, contact="cams"),
+        car.run(road("B", 80, duration=7.5), engine="reduced"),  # 5.5 s: fewer than 6 s
+        Run(car=run.car, signal=run.signal, recording=run.recording, skip=2.5),
+    ]
+    for other in others:
+        comfort = other.comfort()
+        assert comfort.explained == {} and 0.02 < comfort.errors["weighted"] < 0.1
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_road_that_does_not_repeat_has_the_value_of_its_class(car: Car, run: Run, seed: int):
+    """Second derivation: the run on a road that repeats, whose value is that of the class within its own error."""
+    other = drive(car, period="record", seed=seed)
+    stored = comfort_values(other)["seat_rail"]
+    assert stored.over_class is not None and comfort_values(run)["seat_rail"].over_class is None
+    comfort, alone = run.comfort(), other.comfort()
+    for name, of_class in stored.over_class.items():
+        wanted, half = comfort.values[name], 1.96 * comfort.errors[name] * comfort.values[name]
+        assert abs(of_class["value"] - wanted) < math.hypot(half, of_class["half_interval"])
+        assert of_class["half_interval"] < 0.3 * 1.96 * alone.errors[name] * alone.values[name]
+        assert of_class["explained"] > 0.9
+
+
+def test_controlled_dampers_have_no_twin():
+    assert drive(Car.load("focus_road", {"front.damper.control.law": "skyhook"})).comfort().explained == {}
+
+
+def test_the_lead_in_of_the_twin_is_the_end_of_its_period(run: Run):
+    period = signal_period(run.signal)
+    assert period is not None and period.begin == pytest.approx(run.skip)
+    twin = twin_channels(run.car, period, run.recording.channels, run.recording.timestep, ["seat_rail_acc_z"])
+    history = twin["seat_rail_acc_z"]
+    assert history.size == run.time.size and history[0] == 0.0
+    first, samples = round(run.skip / run.recording.timestep), round(period.length / run.recording.timestep)
+    assert history[1500:first] == pytest.approx(history[1500 + samples : first + samples], abs=1e-12)
+    rail = run["seat rail z"]
+    assert np.std(rail[first:] - history[first:]) < 0.2 * np.std(rail[first:])
+
+
+@pytest.mark.parametrize("name", ["weighted", "unweighted:x", "rms:seat rail z:5-25", "tyre_load"])
+def test_figures_have_the_error_that_the_twin_leaves(run: Run, name: str):
+    values = values_of(chosen_figure(name, run.car.vehicle), evaluated(run))
+    assert values.explained is not None and values.error is not None
+    assert values.explained[0] > 0.95
+    # Below a fifth of the error of a record of this length, 1/(2 sqrt(B T)) with half-power bandwidths B of 1 to 6 Hz.
+    assert values.error[0] < 0.2 * values.value[0] * 0.5 / math.sqrt(6.0 * DURATION)
+
+
+def test_saved_runs_reports_and_sweeps_state_the_same_errors(car: Car, run: Run, tmp_path):
+    changed = drive(car.with_({"rear.damper.viscous": 1600.0}))
+    first, second = (each.save(tmp_path / name) for each, name in ((run, "a"), (changed, "b")))
+    assert load_run(first).comfort().errors == pytest.approx(run.comfort().errors, rel=1e-4)
+    width = change_half_width(read_run(first), read_run(second))
+    table = sweep(car, {"rear.damper.viscous": [1500.0, 1600.0]}, road("B", 80, duration=DURATION), engine="reduced")
+    rows = [result.values for result in table.results]
+    assert rows[0]["weighted_error"] == pytest.approx(run.comfort().errors["weighted"], rel=0.02)
+    waves = [waves_of({key: np.array([value]) for key, value in row.items()}, "weighted") for row in rows]
+    of_sweep = 100.0 * STUDENT_95 * difference_error(*waves)[0] / rows[0]["weighted"]
+    # The sweep computes many cars in single precision.
+    assert width == pytest.approx(of_sweep, rel=0.05) and 0.005 < of_sweep < 0.1

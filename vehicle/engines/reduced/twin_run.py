@@ -1,0 +1,85 @@
+"""Run of the linear twin of a car: the car with viscous dampers of the same energy, on the road of a finished run.
+
+The twin (`vehicle.engines.reduced.linear_twin`) has the damping constants c = mean((F - mean F) v)/mean(v^2) of the
+evaluated span of the run. On a road that repeats after this span its steady state is periodic, so the run is a product
+on the lines k/T of the period,
+
+    Y(f) = sum over plates of H(f, c) Z(f),
+
+exact without time steps. The twin lacks the nonlinear parts of the car: the memory of friction, laws over displacement
+beyond their tangent, and the present tyre load on slopes. It also lacks lines above `HIGHEST`.
+
+Sources: see `vehicle.engines.reduced.equivalent_damping`.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from vehicle.arrays import Vector
+from vehicle.engines.reduced.equivalent_damping import equivalent_damping
+from vehicle.engines.reduced.linear_twin import linear_twin
+from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.model.parameters.force_elements import Damper
+from vehicle.threads import one_blas_thread
+
+HIGHEST = 100.0
+"""Highest frequency of the twin [Hz], the upper limit of the weightings of ISO 2631-1."""
+
+
+def damping_of_run(model: PoleModel, laws: Sequence[Damper], record: Mapping[str, Vector], span: slice) -> Vector:
+    """Return the damping constants of the twin [N s/m]; (d,).
+
+    Args:
+        model: pole model of the car.
+        laws: laws of the dampers.
+        record: channels of the run, with forces and velocities of the dampers.
+        span: evaluated samples.
+    """
+    return np.array(
+        [
+            equivalent_damping(law, record[f"{name}_velocity"][span], record[f"{name}_force"][span])
+            for name, law in zip(model.matrices.damper_names, laws, strict=True)
+        ]
+    )
+
+
+@one_blas_thread()
+def twin_run(
+    model: PoleModel,
+    damping: Vector,
+    plates: Mapping[str, Vector],
+    period: float,
+    channels: Sequence[str],
+    samples: int,
+) -> dict[str, Vector]:
+    """Return the steady state of the twin over one period of the plates.
+
+    Args:
+        model: pole model of the car.
+        damping: damping constants c [N s/m]; (d,).
+        plates: wheel to displacement over one period [m]; other plates do not move.
+        period: length of the period T [s].
+        channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers.
+        samples: number of samples n of the result.
+
+    Returns:
+        Histories, (n,) each; a tyre force without the static load.
+    """
+    names = model.matrices.damper_names
+    outputs = [name for name in channels if name.startswith("tyre_") or "_acc_" in name]
+    count = next(iter(plates.values())).size
+    lines = np.arange(1, min(int(HIGHEST * period), (min(count, samples) - 1) // 2) + 1)
+    # (w, 1, m), scaled to the samples of the result.
+    spectra = np.zeros((len(model.matrices.system.inputs), 1, lines.size), dtype=np.complex128)
+    for row, wheel in enumerate(model.matrices.system.inputs):
+        if wheel in plates:
+            spectra[row, 0] = np.fft.rfft(plates[wheel])[lines] * (samples / count)
+    twin = linear_twin(model, outputs, lines / period, spectra)
+    response, velocity = twin.responses(damping)[:, 0], twin.velocities(damping)[:, 0]
+    rows = dict(zip(outputs, response, strict=True))
+    rows |= {f"{name}_velocity": row for name, row in zip(names, velocity, strict=True)}
+    rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity, strict=True)}
+    whole = np.zeros((len(channels), samples // 2 + 1), dtype=np.complex128)
+    whole[:, lines] = [rows[name] for name in channels]
+    return dict(zip(channels, np.fft.irfft(whole, samples, axis=1), strict=True))
