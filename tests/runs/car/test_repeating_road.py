@@ -6,7 +6,8 @@ import pytest
 from tests.validation import validated
 from vehicle import Car, road
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.runs.car.class_value import class_values
+from vehicle.signals.excitation.road_drive import RoadDrive, evaluated_from
 from vehicle.studies.sweeps.plan import plan_sweep
 
 RAIL = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")
@@ -56,6 +57,22 @@ def test_only_a_class_has_a_period(sedan):
 def test_a_span_below_six_seconds_is_noticed(sedan):
     spans = {duration: road("B", 80, duration=duration).under(sedan.vehicle).signal() for duration in (7.9, 8.0)}
     assert "5.9 s of road" in spans[7.9].notices[0] and not spans[8.0].notices
+
+
+@pytest.mark.parametrize("period", ["evaluated", "record"])
+def test_an_evaluation_of_the_rise_is_noticed_and_has_no_period(sedan, period):
+    """From 0 s the first second is too quiet, 4 % of 8 s, which the interval of a road that repeats would deny.
+
+    The linear twin rises as well, so the value of the class is that of a run without the rise.
+    """
+    run = sedan.run(road("B", 80, duration=8, period=period), "reduced", skip=0.0, stated_errors=False)
+    assert "rises from the plane until 1.12 s" in run.signal.notices[0] and "repeats_after_s" not in run.road
+    assert not run.comfort().explained and run.comfort().errors["weighted"] > 0.03
+    whole = sedan.run(road("B", 80, duration=12), "reduced", stated_errors=False).comfort().values["weighted"]
+    corrected = class_values(run.car, run.signal, run.recording, run.skip, run.road, (2.0, 50.0))["weighted"]
+    assert corrected.value == pytest.approx(whole, abs=2.0 * corrected.half_interval)
+    later = road("B", 80, duration=8, period=period).under(sedan.vehicle)
+    assert not evaluated_from(later, 1.2).signal().notices
 
 
 def test_comfort_scatters_little_from_seed_to_seed(sedan):
