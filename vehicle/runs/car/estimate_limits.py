@@ -74,7 +74,7 @@ def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
             raise ConfigurationError(
                 f"estimate: {each.name} has rubber friction, whose force depends on its history; {REMEDY}"
             )
-    if model.applied.shape[1] or model.matrices.run_out:
+    if model.forced:
         raise ConfigurationError(
             "estimate: forces of the vehicle file shake the car too; leave them out with "
             f"--set apply_forces=false, or {REMEDY}"
