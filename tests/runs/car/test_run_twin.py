@@ -78,6 +78,12 @@ def test_a_road_that_does_not_repeat_has_the_value_of_its_class(car: Car, run: R
         assert of_class["explained"] > 0.9
 
 
+def test_whole_numbers_of_seconds_are_stored_as_a_period_too(car: Car, tmp_path):
+    """From Python, without a decimal point: the saved run lost its twin."""
+    run = car.run(road("B", 80, duration=9), engine="reduced", skip=3)
+    assert load_run(run.save(tmp_path / "run")).comfort().explained == pytest.approx(run.comfort().explained, abs=1e-3)
+
+
 def test_forces_of_the_car_have_no_value_of_the_class(car: Car):
     """The ratio would scale the vibration by the forces with the road: 2.3 % wrong in the mean of three roads."""
     forced = car.with_({"front.imbalance.mass": 0.05, "front.imbalance.radius": 0.2})

@@ -194,7 +194,7 @@ class RoadDrive:
         if not self.repeats or self.skip < self._risen:
             return None
         span = (USUAL_DURATION if self.duration is None else self.duration) - self.skip
-        return span if span > 0.0 else None
+        return float(span) if span > 0.0 else None
 
     @property
     def notices(self) -> tuple[str, ...]:
