@@ -2,6 +2,7 @@
 
 import mmap
 import os
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -28,9 +29,10 @@ def resident() -> float:
 
 
 def is_mapped(values: np.ndarray) -> bool:
-    while isinstance(values, np.ndarray):
-        values = values.base
-    return isinstance(getattr(values, "obj", values), mmap.mmap)
+    owner: object = values
+    while isinstance(owner, np.ndarray):
+        owner = owner.base
+    return isinstance(getattr(owner, "obj", owner), mmap.mmap)
 
 
 @pytest.mark.skipif(not PAGES.exists(), reason="resident memory is read on Linux")
@@ -51,7 +53,7 @@ def test_a_table_without_space_on_the_disk_is_in_memory(fault, monkeypatch):
         raise OSError(28, "No space left on device")
 
     if fault == "no space":
-        monkeypatch.setattr(module.shutil, "disk_usage", lambda _: SimpleNamespace(free=1e3))
+        monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1e3))
     if fault == "space lost":
         monkeypatch.setattr(os, "posix_fallocate", full)
     size = 1000 if fault == "small" else 1_000_000
