@@ -130,7 +130,7 @@ def expected_error(fit: DamperFit, speeds: tuple[float, float], velocity: float)
     if distance > 0.0:
         without, fitted = fit.ranges["slower" if slower else "faster"]
         change = distance * max(float(np.nanmean(without**2 - fitted**2)), 0.0)
-        counted = np.count_nonzero(~np.isnan(without))
+        counted = int(np.count_nonzero(~np.isnan(without)))
     mean, spread = float(np.mean(logarithms)), np.nan
     if tests > 2:
         spread = float(np.std(logarithms, ddof=1) * scipy.stats.t.ppf(SHARE, tests - 1) * np.sqrt(1.0 + 1.0 / tests))
