@@ -47,6 +47,17 @@ def test_a_large_table_leaves_the_memory_and_keeps_its_values(tmp_path, monkeypa
     assert np.array_equal(table[15, 0], np.arange(1_000_001.0)) and list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.skipif("CS_GNU_LIBC_VERSION" not in getattr(os, "confstr_names", {}), reason="memory of glibc")
+def test_beside_a_large_table_a_freed_array_leaves_the_memory():
+    """By itself glibc would keep its memory, as arrays of this size were freed before."""
+    table_of((16, 1_000_001))
+    for _ in range(2):
+        before, arrays = resident(), [np.ones(3_000_000), np.ones(1_000_000), np.ones(1)]
+        assert resident() - before > 25e6
+        del arrays[:2]
+        assert resident() - before < 5e6
+
+
 @pytest.mark.parametrize("fault", ["no space", "space lost", "small"])
 def test_a_table_without_space_on_the_disk_is_in_memory(fault, monkeypatch):
     def full(*_):

@@ -26,6 +26,9 @@ from vehicle.threads import one_blas_thread
 HIGHEST = 100.0
 """Highest frequency of the twin [Hz], the upper limit of the weightings of ISO 2631-1."""
 
+LINES_AT_ONCE = 2**14
+"""Lines that are computed together, which limits the memory: a number for each pole at each line."""
+
 
 def damping_of_run(model: PoleModel, laws: Sequence[Damper], record: Mapping[str, Vector], span: slice) -> Vector:
     """Return the damping constants of the twin [N s/m]; (d,).
@@ -75,11 +78,13 @@ def twin_run(
     for row, wheel in enumerate(model.matrices.system.inputs):
         if wheel in plates:
             spectra[row, 0] = np.fft.rfft(plates[wheel])[lines] * (samples / count)
-    twin = linear_twin(model, outputs, lines / period, spectra)
-    response, velocity = twin.responses(damping)[:, 0], twin.velocities(damping)[:, 0]
-    rows = dict(zip(outputs, response, strict=True))
-    rows |= {f"{name}_velocity": row for name, row in zip(names, velocity, strict=True)}
-    rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity, strict=True)}
     whole = np.zeros((len(channels), samples // 2 + 1), dtype=np.complex128)
-    whole[:, lines] = [rows[name] for name in channels]
+    for first in range(0, lines.size, LINES_AT_ONCE):
+        part = slice(first, first + LINES_AT_ONCE)
+        twin = linear_twin(model, outputs, lines[part] / period, spectra[:, :, part])
+        response, velocity = twin.responses(damping)[:, 0], twin.velocities(damping)[:, 0]
+        rows = dict(zip(outputs, response, strict=True))
+        rows |= {f"{name}_velocity": row for name, row in zip(names, velocity, strict=True)}
+        rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity, strict=True)}
+        whole[:, lines[part]] = [rows[name] for name in channels]
     return dict(zip(channels, np.fft.irfft(whole, samples, axis=1), strict=True))

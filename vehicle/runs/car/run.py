@@ -197,7 +197,7 @@ class Run:
         points = (point, "seat") if point == "seat_rail" and self.car.vehicle.seated and recorded else (point,)
         return run_comfort(
             self.recording.timestep,
-            *(np.stack([self.recording[f"{name}_acc_{axis}"] for axis in AXES]) for name in points),
+            *(self.recording.stacked([f"{name}_acc_{axis}" for axis in AXES]) for name in points),
             skip=self.skip,
             band=self.signal.band(COMFORT_BAND),
             point=point.replace("_", " "),
@@ -239,7 +239,7 @@ class Run:
         angle, speed = self.car.vehicle.composition.turning(angle)
         if angle == CRANK and self.car.vehicle.composition.crank_run_up is not None:
             raise ConfigurationError(f"orders: the speed of {angle} changes in this run; use order_cut")
-        histories = np.array([self.recording[name] for name in names])
+        histories = self.recording.stacked(names)
         lines = order_lines(self.time, histories, speed / (2.0 * np.pi), orders, begin=self.skip)
         return named_orders(lines, names, tuple(self.recording.units[name] for name in names), angle)
 
