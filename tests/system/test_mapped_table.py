@@ -2,6 +2,8 @@
 
 import mmap
 import os
+import subprocess
+import sys
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
