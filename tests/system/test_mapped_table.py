@@ -2,9 +2,9 @@
 
 import mmap
 import os
+import shutil
 import subprocess
 import sys
-import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
