@@ -1,6 +1,6 @@
 """Drive torques of a car in steady acceleration: moments on the hubs, with a reaction on another part."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from vehicle.errors import ConfigurationError
@@ -35,12 +35,22 @@ def with_drive_torques(car: Composition, driving: Driving, body: TrimmedBody) ->
         raise ConfigurationError(f"driving.drive_reaction: found {reaction!r}, must be {allowed}")
     if driving.acceleration <= 0.0 or reaction == WHEEL:
         return car
-    hubs = {link.carrier: link.moving for link in car.connections}
+    fixed = {part.name: part.parent for part in car.parts if not part.joints}
+    moving = {link.carrier: link.moving for link in car.connections}
+    hubs = {wheel.name: _carried_by(moving[wheel.plate], fixed) for wheel in car.wheels}
+    axles = {wheel.name: [hubs[other.name] for other in car.wheels if other.axle == wheel.axle] for wheel in car.wheels}
+    inside = {
+        name
+        for name, others in axles.items()
+        # The axle of one piece usually has the differential; its torques then are between parts of the axle.
+        if (driving.drive_reaction is None and others.count(hubs[name]) > 1)
+        or hubs[name] == _carried_by(reaction, fixed)
+    }
     mass = body.mass + _mass(car.parts)
     torques = [
         PlacedForce(
             name=f"drive_{wheel.name}",
-            on=hubs[wheel.plate],
+            on=moving[wheel.plate],
             against=reaction,
             at=wheel.center,
             moment=(0.0, 1.0, 0.0),
@@ -53,10 +63,17 @@ def with_drive_torques(car: Composition, driving: Driving, body: TrimmedBody) ->
             unit="N m",
         )
         for wheel in car.wheels
-        if shares[wheel.name]
+        if shares[wheel.name] and wheel.name not in inside
     ]
     last = [force for force in car.forces if force.tyre]
     return replace(car, forces=(*(force for force in car.forces if not force.tyre), *torques, *last))
+
+
+def _carried_by(part: str, fixed: Mapping[str, str]) -> str:
+    """Return the part that carries a part without a joint between them, or the part itself."""
+    while part in fixed and fixed[part] not in (BODY, "world"):
+        part = fixed[part]
+    return part
 
 
 def _mass(parts: Sequence[PlacedPart]) -> float:
@@ -75,7 +92,8 @@ def require_acceleration(car: Composition, driving: Driving) -> None:
     blocks = [link.path for link in car.connections if link.ground and link.carrier not in plates]
     if blocks:
         raise ConfigurationError(
-            f"{message} the car also stands on {blocks[0]}, which no brake holds; use a car on four wheels"
+            f"{message} the car also stands on {blocks[0]}, whose share of the forces is unknown; use a car on four "
+            "wheels, for example focus_road"
         )
     if len({wheel.axle for wheel in car.wheels}) != 2:
         raise ConfigurationError(f"{message} the car must stand on two axles with wheels")

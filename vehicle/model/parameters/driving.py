@@ -78,7 +78,7 @@ class Driving(Validated):
     drive_reaction: str | None = quantity(
         "-",
         "part with the reaction of the drive torque, which has the differential; wheel for motors in the wheels; "
-        "default: engine, or wheel in a car without one",
+        "default: engine, or wheel in a car without one and for an axle of one piece, which has its differential",
         default=None,
     )
     friction: float = quantity(
@@ -102,8 +102,9 @@ class Driving(Validated):
 
     @property
     def words(self) -> str:
-        """State of the tyres for summaries and captions, for example "rolling at 80 km/h"."""
-        return tyre_words([self])
+        """State of tyres and car for summaries and captions, for example "rolling at 80 km/h, acceleration -3 m/s2"."""
+        steady = {"acceleration": self.acceleration, "lateral acceleration": self.lateral}
+        return ", ".join([tyre_words([self]), *(f"{name} {value:g} m/s2" for name, value in steady.items() if value)])
 
 
 STANDING = Driving()

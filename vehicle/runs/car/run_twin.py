@@ -3,8 +3,7 @@
 The twin (`vehicle.engines.reduced.twin_run`) drives over the same road. The random phases of the road act on both
 alike, so the difference between run and twin gives the error of a value of the run
 (`vehicle.signals.analysis.comfort_error`). Other roads have no twin, nor cams, which follow the upper envelope of the
-road. A car with controlled dampers, or with stops in its dampers, has no twin: their forces depend on more than the
-damper velocity.
+road. A twin of controlled dampers, or of stops, has their energy too; the share that it explains tells how alike it is.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -86,10 +85,8 @@ def repeats_after(road: Mapping[str, object] | None) -> float | None:
 
 
 def damper_channels(vehicle: Vehicle) -> tuple[str, ...]:
-    """Return the channels that a run must record for its twin; empty for a car without a twin."""
+    """Return the channels that a run must record for its twin; empty for a car without dampers, which has none."""
     dampers = vehicle.composition.dampers
-    if any(damper.law.controlled or damper.law.function or damper.law.stop for damper in dampers):
-        return ()
     return tuple(f"{damper.name}_{quantity}" for damper in dampers for quantity in ("velocity", "force"))
 
 

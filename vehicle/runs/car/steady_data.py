@@ -105,10 +105,11 @@ def steady_data(car: Any, still: Any, axles: Sequence[AxleData], cog_height: flo
     if driving.acceleration:
         shares, wheelbase = driven_wheels(driving, placed.values()), abs(axles[1].x_m - axles[0].x_m)
         along = {wheel.name: abs(wheel.along_n) for wheel in wheels}
-        by_shafts = any(force.path == DRIVING for force in car.vehicle.composition.forces)
+        torques = [force.name for force in car.vehicle.composition.forces if force.path == DRIVING]
         for axle in axles:
-            angle = axle.geometry.drive_support_deg if by_shafts else axle.geometry.brake_support_deg
-            slope, wheel_name = math.tan(math.radians(angle)), axle.wheels[0]
+            wheel_name, geometry = axle.wheels[0], axle.geometry
+            by_shafts = f"drive_{wheel_name}" in torques
+            slope = math.tan(math.radians(geometry.drive_support_deg if by_shafts else geometry.brake_support_deg))
             supports.append(
                 AxleSupport(
                     name=axle.name,

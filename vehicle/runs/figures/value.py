@@ -36,7 +36,7 @@ def values_of(chosen: ChosenFigure, runs: Runs) -> Values:
         return values
     of_twin = on(twin)
     assert of_twin.waves is not None  # as in the run
-    return Values(values.value, *paired(values.value, values.error, values.waves, of_twin.value, of_twin.waves))
+    return Values(values.value, *paired(values.error, values.waves, of_twin.waves))
 
 
 def require_unit(chosen: ChosenFigure, unit: str, units: Mapping[str, str]) -> None:
