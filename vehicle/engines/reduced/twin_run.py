@@ -6,8 +6,9 @@ on the lines k/T of the period,
 
     Y(f) = sum over plates of H(f, c) Z(f),
 
-exact without time steps. The twin lacks the nonlinear parts of the car: the memory of friction, laws over displacement
-beyond their tangent, and the present tyre load on slopes. It also lacks lines above `HIGHEST`.
+exact without time steps, and its mean squares, weighted or not, are sums over the lines. The twin lacks the nonlinear
+parts of the car: the memory of friction, laws over displacement beyond their tangent, and the present tyre load on
+slopes. It also lacks lines above `HIGHEST`.
 
 Sources: see `vehicle.engines.reduced.equivalent_damping`.
 """
@@ -16,9 +17,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from vehicle.arrays import Vector
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping
-from vehicle.engines.reduced.linear_twin import linear_twin
+from vehicle.engines.reduced.linear_twin import LinearTwin, linear_twin
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.threads import one_blas_thread
@@ -45,6 +46,52 @@ def damping_of_run(model: PoleModel, laws: Sequence[Damper], record: Mapping[str
 
 
 @one_blas_thread()
+def period_twin(
+    model: PoleModel, plates: Mapping[str, Vector], period: float, channels: Sequence[str], samples: int
+) -> LinearTwin:
+    """Return the responses of the twin to the lines of one period of the plates, for any damping constants.
+
+    Args:
+        model: pole model of the car.
+        plates: wheel to displacement over one period [m]; other plates do not move.
+        period: length of the period T [s].
+        channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers.
+        samples: number of samples of a record of one period.
+
+    Returns:
+        The twin at the lines k/T up to `HIGHEST`; its outputs are the accelerations and tyre forces in the order of
+        `channels`, to one input, scaled so that |line|^2 = S df.
+    """
+    count = next(iter(plates.values())).size
+    lines = np.arange(1, min(int(HIGHEST * period), (min(count, samples) - 1) // 2) + 1)
+    spectra = np.zeros((len(model.matrices.system.inputs), 1, lines.size), dtype=np.complex128)  # (w, 1, m)
+    for row, wheel in enumerate(model.matrices.system.inputs):
+        if wheel in plates:
+            spectra[row, 0] = np.fft.rfft(plates[wheel])[lines] * (np.sqrt(2.0) / count)
+    return linear_twin(model, _outputs(channels), lines / period, spectra)
+
+
+def _outputs(channels: Sequence[str]) -> list[str]:
+    return [name for name in channels if name.startswith("tyre_") or "_acc_" in name]
+
+
+def twin_lines(twin: LinearTwin, dampers: Sequence[str], damping: Vector, channels: Sequence[str]) -> Complex:
+    """Return the lines of channels of a twin in its steady state, |line|^2 = S df; (k, m).
+
+    Args:
+        twin: see `period_twin`, with its channels.
+        dampers: names of the dampers.
+        damping: damping constants c [N s/m]; (d,).
+        channels: names of the channels.
+    """
+    velocity = twin.velocities(damping)
+    response = twin.with_velocities(damping, velocity)[:, 0]
+    rows = dict(zip(_outputs(channels), response, strict=True))
+    rows |= {f"{name}_velocity": row for name, row in zip(dampers, velocity[:, 0], strict=True)}
+    rows |= {f"{name}_force": c * row for name, c, row in zip(dampers, damping, velocity[:, 0], strict=True)}
+    return np.array([rows[name] for name in channels])
+
+
 def twin_run(
     model: PoleModel,
     damping: Vector,
@@ -53,33 +100,16 @@ def twin_run(
     channels: Sequence[str],
     samples: int,
 ) -> dict[str, Vector]:
-    """Return the steady state of the twin over one period of the plates.
+    """Return the steady state of the twin over one period of the plates as histories, (n,) each.
 
     Args:
-        model: pole model of the car.
+        model, plates, period, channels: see `period_twin`.
         damping: damping constants c [N s/m]; (d,).
-        plates: wheel to displacement over one period [m]; other plates do not move.
-        period: length of the period T [s].
-        channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers.
         samples: number of samples n of the result.
-
-    Returns:
-        Histories, (n,) each; a tyre force without the static load.
     """
-    names = model.matrices.damper_names
-    outputs = [name for name in channels if name.startswith("tyre_") or "_acc_" in name]
-    count = next(iter(plates.values())).size
-    lines = np.arange(1, min(int(HIGHEST * period), (min(count, samples) - 1) // 2) + 1)
-    # (w, 1, m), scaled to the samples of the result.
-    spectra = np.zeros((len(model.matrices.system.inputs), 1, lines.size), dtype=np.complex128)
-    for row, wheel in enumerate(model.matrices.system.inputs):
-        if wheel in plates:
-            spectra[row, 0] = np.fft.rfft(plates[wheel])[lines] * (samples / count)
-    twin = linear_twin(model, outputs, lines / period, spectra)
-    response, velocity = twin.responses(damping)[:, 0], twin.velocities(damping)[:, 0]
-    rows = dict(zip(outputs, response, strict=True))
-    rows |= {f"{name}_velocity": row for name, row in zip(names, velocity, strict=True)}
-    rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity, strict=True)}
+    twin = period_twin(model, plates, period, channels, samples)
+    lines = twin_lines(twin, model.matrices.damper_names, damping, channels)
     whole = np.zeros((len(channels), samples // 2 + 1), dtype=np.complex128)
-    whole[:, lines] = [rows[name] for name in channels]
+    # A line at k/T and its mirror image.
+    whole[:, 1 : lines.shape[1] + 1] = lines * (samples / np.sqrt(2.0))
     return dict(zip(channels, np.fft.irfft(whole, samples, axis=1), strict=True))
