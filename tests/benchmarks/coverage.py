@@ -2,8 +2,9 @@
 
 Parts: `comfort`, comfort_error and the error of a difference, of a linear car on generated and on Gaussian roads;
 `length`, comfort of 10, 30 and 60 s of one class with the reduced engine; `twin`, comfort and differences of cars on
-roads that repeat, with their linear twins; `ratio`, comfort over a class from roads that do not repeat; `quantile`,
-quantiles of made cars; `sobol`, intervals of Sobol indices; `tuning`, standard errors of fitted parameters.
+roads that repeat, with their linear twins; `ratio`, comfort over a class from roads that do not repeat; `precision`,
+runs whose length a precision has chosen; `quantile`, quantiles of made cars; `sobol`, intervals of Sobol indices;
+`tuning`, standard errors of fitted parameters.
 """
 
 import argparse
@@ -232,6 +233,33 @@ def ratio(repetitions: int) -> Rows:
     return rows
 
 
+def precision(repetitions: int) -> Rows:
+    """Runs whose length a precision of 1 % has chosen: chosen span, stated half interval, scatter, coverage."""
+    rows: Rows = []
+    cars = [("sedan", {}), ("focus_road", {}), ("sedan", {"front.damper.coulomb_friction": 120.0})]
+    for (name, changes), road in itertools.product(cars, "AC"):
+        car, found = Car.load(name, changes), []
+        for seed in range(1, repetitions + 1):
+            run = car.run(Road(road, 80.0, precision=1.0, seed=seed), engine="reduced", stated_errors=False)
+            comfort = run.comfort()
+            half = 196.0 * comfort.errors[WEIGHTED]
+            found.append((run.signal.duration - run.skip, half, comfort.weighted.overall))
+        span, half, value = np.array(found).T
+        gap = 100.0 * (value / value.mean() - 1.0)
+        rows.append(
+            {
+                "car": f"{name} {road}, {changes or 'unchanged'}",
+                "span_median_s": np.median(span),
+                "span_max_s": span.max(),
+                "half_median_percent": np.median(half),
+                "half_below_1.3": np.mean(half <= 1.3),
+                "scatter_percent": gap.std(ddof=1),
+                "covers_95": np.mean(np.abs(gap) < half),
+            }
+        )
+    return rows
+
+
 def quantile(repetitions: int) -> Rows:
     """Share of new cars within a stated quantile of made cars, for responses of one to six tolerances."""
     responses: dict[str, Callable[[Vector], Vector]] = {
@@ -358,7 +386,7 @@ def tuning(repetitions: int) -> Rows:
 
 
 PARTS: dict[str, Callable[[int], Rows]] = {
-    "comfort": comfort, "length": length, "twin": twin, "ratio": ratio,
+    "comfort": comfort, "length": length, "twin": twin, "ratio": ratio, "precision": precision,
     "quantile": quantile, "sobol": sobol, "tuning": tuning,
 }  # fmt: skip
 

@@ -43,6 +43,7 @@ from vehicle.runs.car.origin import Origin
 from vehicle.runs.car.outside_tests import with_range_notice
 from vehicle.runs.car.road import Road
 from vehicle.runs.car.road_estimate import RoadEstimate, road_estimate
+from vehicle.runs.car.road_precision import with_duration
 from vehicle.runs.car.run import Run
 from vehicle.runs.car.simulated_run import simulated_run
 from vehicle.runs.car.stepped_car import stepped_car
@@ -385,7 +386,7 @@ class Car:
             SimulationError: the run failed.
         """
         if isinstance(source, Road):
-            drive = evaluated_from(source.under(self.vehicle, self.overrides), skip)
+            drive = with_duration(self, evaluated_from(source.under(self.vehicle, self.overrides), skip))
             signal = drive.signal()
             start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
             car, named = self._of_drive(tuple(drive.overrides)), replace(signal, source=drive.name)
