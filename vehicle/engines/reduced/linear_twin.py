@@ -121,6 +121,6 @@ def linear_twin(
 
 
 def _real_product(matrix: Vector, lines: Complex | Vector) -> Complex:
-    """Return the product of a real matrix (a, b) and complex lines (b, m), as real numbers; (a, m)."""
+    """Return the product of a real matrix (a, b) and complex lines (b, m) by real numbers; (a, m)."""
     lines = np.ascontiguousarray(lines, dtype=np.complex128)
     return np.asarray((matrix @ lines.view(np.float64)).view(np.complex128))

@@ -393,8 +393,9 @@ class Car:
             run = car.run(named, engine, progress=progress, channels=channels, skip=start, forces=forces,
                           stated_errors=stated_errors)  # fmt: skip
             return replace(run, road=drive.summary(signal))
-        wheel = self.vehicle.shaker_wheel
-        signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)
+        signal = (
+            source if isinstance(source, Signal) else read_signal(find_input(source), wheel=self.vehicle.shaker_wheel)
+        )
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
         driven = with_histories(self, forces, signal.time) if forces else self
         car, recording, reason = simulated_run(driven, signal, progress, engine, channels, stated=stated_errors)

@@ -16,21 +16,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import Any, TypeVar
+
+import numpy as np
 
 from vehicle.digits import number
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
-from vehicle.runs.car.run import Run
-from vehicle.runs.car.run_twin import damper_channels
+from vehicle.runs.car.run_twin import damper_channels, twin_comfort
 from vehicle.runs.car.simulated_run import simulated_run
+from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.comfort_error import NORMAL_95
-from vehicle.signals.analysis.ride_comfort import WEIGHTED
+from vehicle.signals.analysis.ride_comfort import ERROR, WEIGHTED, comfort_columns, with_twins
 from vehicle.signals.excitation.road_drive import SHORTEST_SPAN_S, RoadDrive
 from vehicle.threads import one_blas_thread
-
-if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
 
 Source = TypeVar("Source")
 
@@ -42,7 +41,7 @@ PILOTS = 3
 
 
 @one_blas_thread()
-def with_duration(car: Car, source: Source) -> Source:
+def with_duration(car: Any, source: Source) -> Source:
     """Return a road of a class with the duration for its precision; other inputs, and one without, are unchanged.
 
     Args:
@@ -64,10 +63,10 @@ def with_duration(car: Car, source: Source) -> Source:
         span = min(float(math.ceil(span * (half / wanted) ** 2)), LONGEST_SPAN_S)
     limit = " (the maximum)" if span == LONGEST_SPAN_S and half > wanted else ""
     text = f"--precision {wanted:g}: {span:g} s of {drive.name} evaluated{limit}, the pilot states {number(half, 2)} %"
-    return replace(drive, chosen=text)  # type: ignore[return-value]  # a RoadDrive, as the source
+    return replace(drive, chosen=text)
 
 
-def _half_interval(car: Car, drive: RoadDrive) -> float:
+def _half_interval(car: Any, drive: RoadDrive) -> float:
     """Return half of the 95 % interval of the weighted comfort of a pilot run [%]."""
     driven, signal = car._of_drive(drive.overrides), drive.signal()
     dampers = damper_channels(driven.vehicle)
@@ -76,7 +75,10 @@ def _half_interval(car: Car, drive: RoadDrive) -> float:
             f"--precision: {driven.vehicle.name} has controlled dampers, dampers of the user's own or with stops, and "
             "no linear twin that states its error; set --duration"
         )
-    channels = (*(f"seat_rail_acc_{axis}" for axis in AXES), *dampers)
-    simulated, recording, reason = simulated_run(driven, signal, None, "reduced", channels, stated=False)
-    run = Run(car=simulated, signal=signal, recording=recording, engine_reason=reason, skip=drive.skip)
-    return 100.0 * NORMAL_95 * run.comfort().errors[WEIGHTED]
+    rail = [f"seat_rail_acc_{axis}" for axis in AXES]
+    _, recording, _ = simulated_run(driven, signal, None, "reduced", [*rail, *dampers], stated=False)
+    step, rows = recording.timestep, np.stack([recording[name] for name in rail])
+    columns = comfort_columns(step, rows[None], skip=drive.skip, names=[WEIGHTED])
+    twin = twin_comfort(driven, signal, recording, drive.skip, ["seat_rail"], band=COMFORT_BAND, contact="seat")
+    assert twin is not None  # with these dampers, on a road that repeats
+    return 100.0 * NORMAL_95 * float(with_twins(columns, twin)[f"{WEIGHTED}{ERROR}"][0])

@@ -4,8 +4,8 @@ In the steady state the weighted vibration has the lines H(f_k) X_k, with the co
 
     W^2 = sum |H X_k|^2,    C_m = sum (H X_k)^H (H X_(k+m)) / (2 W)
 
-are what the periodogram of a record of one period gives (`vehicle.signals.analysis.comfort_error`). A filter that
-starts at rest, as that of a run before its evaluated span, differs by its decay.
+are what the periodogram of a record of one period gives (`vehicle.signals.analysis.comfort_error`). The filter of a run
+starts at rest before the evaluated span, so its record still contains the decay of the filter.
 """
 
 from collections.abc import Collection
@@ -30,7 +30,7 @@ def comfort_lines(
     contact: str = "seat",
     axes: bool = False,
 ) -> dict[str, Vector]:
-    """Return overall comfort values and their `wave_names`, as `ride_comfort.comfort_columns`; (r,) each.
+    """Return overall comfort values and their `wave_names` under the names of `comfort_columns`; (r,) each.
 
     Args:
         frequency: lines [Hz]; (m,).

@@ -16,8 +16,8 @@ class RoadSettings(Settings):
         "length of the drive [s]; default: 60, or the whole profile", within="(0, inf)", type=float, metavar="S"
     )
     precision: float | None = setting(
-        "half of the 95 %% interval of the weighted comfort, in percent, for which pilot runs with the reduced engine "
-        "choose the length of the drive, in place of its duration: 6 to 600 s are evaluated",
+        "half of the 95-percent interval of the weighted comfort, in percent, for which pilot runs with the reduced "
+        "engine choose the length of the drive, in place of its duration: 6 to 600 s are evaluated",
         within="(0, 100)",
         type=float,
         metavar="P",
