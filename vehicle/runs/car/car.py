@@ -387,15 +387,13 @@ class Car:
         """
         if isinstance(source, Road):
             drive = with_duration(self, evaluated_from(source.under(self.vehicle, self.overrides), skip))
-            signal = drive.signal()
-            start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
-            car, named = self._of_drive(tuple(drive.overrides)), replace(signal, source=drive.name)
+            start = evaluation_start({drive.name: (signal := drive.signal()).duration}, skip, drive.skip)
+            car, named = self._of_drive(drive.overrides), replace(signal, source=drive.name)
             run = car.run(named, engine, progress=progress, channels=channels, skip=start, forces=forces,
                           stated_errors=stated_errors)  # fmt: skip
             return replace(run, road=drive.summary(signal))
-        signal = (
-            source if isinstance(source, Signal) else read_signal(find_input(source), wheel=self.vehicle.shaker_wheel)
-        )
+        wheel = self.vehicle.shaker_wheel
+        signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
         driven = with_histories(self, forces, signal.time) if forces else self
         car, recording, reason = simulated_run(driven, signal, progress, engine, channels, stated=stated_errors)
