@@ -13,7 +13,7 @@ BOXES = {
     "commands": (30, 30, 940, 32, ["python -m vehicle NAME, or import vehicle"]),
     "studies": (420, 96, 550, 66, ["design  mounts  dampers  replication  sweeps  tuning  optimisation"]),
     "model": (210, 200, 180, 156, ["parameters", "laws", "flexbody", "shapes", "assembly", "templates, vehicles"]),
-    "engines": (420, 200, 170, 120, ["simulation", "kinematics", "linear", "reduced"]),
+    "engines": (420, 200, 170, 120, ["simulation", "kinematics", "linear", "reduced, steady"]),
     "runs": (620, 200, 160, 138, ["car", "figures", "comparison", "output", "targets", "report"]),
     "handover": (810, 200, 160, 120, ["fmu", "page", "bench"]),
     "signals": (210, 392, 180, 138, ["formats", "records", "excitation", "analysis", "inputs"]),

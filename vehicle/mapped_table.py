@@ -5,6 +5,7 @@ before it is used: a mapped page without space on the disk would end the process
 that cannot reserve it, the table is in memory.
 """
 
+import ctypes
 import math
 import mmap
 import os
@@ -22,6 +23,12 @@ a program has use for its memory."""
 
 LARGE_FILES = Path("/var/tmp")
 """Folder of large temporary files, on a disk; /tmp is often in memory. Source: file-hierarchy(7), systemd."""
+
+
+MMAP_THRESHOLD, LARGE_ARRAY = -3, 2**20
+"""Option of `mallopt`, and the size from which an array returns its memory to the system when it ends [byte].
+
+By itself glibc keeps freed arrays of up to 32 MB for later ones. Source: mallopt(3), M_MMAP_THRESHOLD."""
 
 
 def scratch_folder() -> Path:
@@ -44,6 +51,8 @@ def table_of(shape: tuple[int, ...]) -> Vector:
     try:
         with tempfile.TemporaryFile(dir=scratch_folder()) as file:
             os.posix_fallocate(file.fileno(), 0, size)
+            if hasattr(libc := ctypes.CDLL(None), "mallopt"):
+                libc.mallopt(MMAP_THRESHOLD, LARGE_ARRAY)
             return np.frombuffer(mmap.mmap(file.fileno(), size), dtype=np.float64).reshape(shape)
     except OSError:  # no space, or a file system without files of this kind
         return np.empty(shape)

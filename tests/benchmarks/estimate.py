@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from vehicle import Car, road
-from vehicle.errors import SimulationError
+from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import road_estimate
-from vehicle.runs.car.estimate_limits import LEAST_LOOSE, MOST_ENGAGED, loose_share, outside_share
+from vehicle.runs.car.estimate_limits import LEAST_LOOSE, MOST_ENGAGED, loose_share, outside_share, require_contact
 from vehicle.studies.sweeps.plan import sweep
 
 NAMES = ("weighted", "weighted_x", "weighted_y", "weighted_z", "unweighted", "tyre_load_rms")
@@ -75,7 +75,14 @@ def compared(name: str, speed: float, classes: str, cars: Sequence[Sequence[str]
         outside = [outside_share(law, each) for law, each in zip(laws, displacements, strict=True)]
         seen.append((min(shares), max(outside, default=0.0)))
 
+    def note_contact(*loads: Any) -> None:
+        try:
+            require_contact(*loads)
+        except ConfigurationError:
+            seen[-1] = (0.0, seen[-1][1])  # refused
+
     setattr(road_estimate, "require_motion", note)  # noqa: B010
+    setattr(road_estimate, "require_contact", note_contact)  # noqa: B010
     for letter in classes:
         inputs = [road(letter, speed, duration=SKIP_S + SPAN_S + 1.0, seed=seed) for seed in SEEDS]
         measure = ["weighted", "weighted_x", "weighted_y", "weighted_z", "unweighted", "tyre_load_rms"]

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from vehicle.studies.dampers.damper_fit import choose_law
+from vehicle.studies.dampers.damper_choice import choose_law
 from vehicle.studies.dampers.damper_law import DamperLaw
 from vehicle.studies.dampers.damper_test import DamperTest
 from vehicle.studies.dampers.waveform import waveform_of
@@ -121,10 +121,13 @@ def _inverse(known, side):
     """Friction limit at rest, and the velocity over the force beyond: forces and velocities of a fine table."""
     w = np.concatenate([[0.0], np.logspace(-6.0, 1.0, 60001)])
     force, at = np.zeros(w.size), 0.0
-    for slope, end in known.get("curve") or known[side]:
+    for slope, end in known.get("curve") or known.get(side, ()):
         far = 1e3 if end is None else end
         force, at = force + slope * np.clip(w - at, 0.0, far - at), far
-    limit = known.get("coulomb", 0.0)
+    if "power" in known:
+        coefficient, exponent = known["power"]
+        force += coefficient * w**exponent * (known.get("share", 1.0) if side == "bump" else 1.0)
+    limit = known.get(f"coulomb {side}", known.get("coulomb", 0.0))
     if "stribeck" in known:
         sliding, limit, critical = known["stribeck"]
         return limit, force + sliding + (limit - sliding) * np.exp(-((w / critical) ** 2)), w
@@ -135,13 +138,14 @@ def force_of(known, t, x, v, times):
     """Force at times: deflection of eye and machine, and slip of the sliders, by LSODA."""
     spring, gas = values_of(known)["series_stiffness"], known.get("gas_stiffness", 0.0)
     rebound, bump = _inverse(known, "rebound"), _inverse(known, "bump")
+    gap = 0.5 * known.get("gap", 0.0)
     sliders, offset = [(limit / stroke, limit) for limit, stroke in known.get("sliders", ())], known.get("gas_force", 0)
 
     def rate(time, state):
         at, moved = min(time / FINE, t.size - 1.001), state[0]
         i, share = int(at), at % 1.0
         u = x[i] + share * (x[i + 1] - x[i]) - moved
-        force, slips = spring * moved - gas * u + offset, []
+        force, slips = spring * (moved - np.clip(moved, -gap, gap)) - gas * u + offset, []
         for (stiffness, limit), slipped in zip(sliders, state[1:], strict=True):
             held = stiffness * (u - slipped)
             force -= held
@@ -152,7 +156,7 @@ def force_of(known, t, x, v, times):
 
     start = [-offset / spring, *(x[0] + offset / spring for _ in sliders)]
     solution = solve_ivp(rate, (0.0, times[-1]), start, "LSODA", times, rtol=1e-7, atol=1e-11, max_step=2e-3)
-    return spring * solution.y[0]
+    return spring * (solution.y[0] - np.clip(solution.y[0], -gap, gap))
 
 
 def records_of(known, seed, names=PLAN):

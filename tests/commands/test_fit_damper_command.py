@@ -64,7 +64,9 @@ def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_p
     assert main([*files, "--pattern", "*_{current}A", "--quiet", "--output", str(tmp_path / "out")]) == 0
     names = {path.name for path in (tmp_path / "out").iterdir() if path.suffix in (".toml", ".png", ".csv")}
     assert names == {"damper_tests.csv", "damper_control.toml", "damper_control.png"} | {
-        f"damper_current_{current}.{ending}" for current in (0, 1) for ending in ("toml", "png")
+        f"damper_{name}current_{current}.{ending}"
+        for current in (0, 1)
+        for name, ending in (("", "toml"), ("", "png"), ("band_", "csv"), ("band_", "png"))
     }
     control = tomllib.loads((tmp_path / "out" / "damper_control.toml").read_text())
     assert control == pytest.approx({"minimum_damping": 800.0, "maximum_damping": 2400.0}, rel=0.02)

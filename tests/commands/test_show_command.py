@@ -19,6 +19,21 @@ def test_text_and_json(capsys):
     assert found["axles"][0]["brake_support_percent"] == pytest.approx(27.74, abs=0.01)
 
 
+def test_steady_acceleration(capsys):
+    assert main(["sedan", "--acceleration", "-3", "--lateral", "2", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["steady"]
+    assert (found["acceleration"], found["lateral"]) == (-3.0, 2.0)
+    assert sum(wheel["along_n"] for wheel in found["wheels"]) == pytest.approx(-3.0 * 1652.924, rel=1e-6)
+    assert sum(wheel["across_n"] for wheel in found["wheels"]) == pytest.approx(2.0 * 1652.924, rel=1e-6)
+    assert found["pitch_deg"] > 0.0 and found["roll_deg"] > 0.0
+    # All of the brakes would carry 27.74 %.
+    assert found["supports"][0]["percent"] == pytest.approx(0.7 * 27.74, abs=0.01)
+    assert main(["sedan", "--acceleration", "-3"]) == 0
+    assert "m/s2 to the left; pitch 0.30 deg (nose down +)" in capsys.readouterr().out
+    assert main(["sedan", "--acceleration", "-3", "--set", "driving.acceleration=-2"]) == 2
+    assert "both set driving.acceleration" in capsys.readouterr().err
+
+
 def test_files(tmp_path, capsys):
     folder = tmp_path / "car"
     assert main(["focus", "--output", str(folder)]) == 0

@@ -2,6 +2,7 @@
 
 import mmap
 import os
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -28,9 +29,10 @@ def resident() -> float:
 
 
 def is_mapped(values: np.ndarray) -> bool:
-    while isinstance(values, np.ndarray):
-        values = values.base
-    return isinstance(getattr(values, "obj", values), mmap.mmap)
+    owner: object = values
+    while isinstance(owner, np.ndarray):
+        owner = owner.base
+    return isinstance(getattr(owner, "obj", owner), mmap.mmap)
 
 
 @pytest.mark.skipif(not PAGES.exists(), reason="resident memory is read on Linux")
@@ -45,13 +47,24 @@ def test_a_large_table_leaves_the_memory_and_keeps_its_values(tmp_path, monkeypa
     assert np.array_equal(table[15, 0], np.arange(1_000_001.0)) and list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.skipif("CS_GNU_LIBC_VERSION" not in getattr(os, "confstr_names", {}), reason="memory of glibc")
+def test_beside_a_large_table_a_freed_array_leaves_the_memory():
+    """By itself glibc would keep its memory, as arrays of this size were freed before."""
+    table_of((16, 1_000_001))
+    for _ in range(2):
+        before, arrays = resident(), [np.ones(3_000_000), np.ones(1_000_000), np.ones(1)]
+        assert resident() - before > 25e6
+        del arrays[:2]
+        assert resident() - before < 5e6
+
+
 @pytest.mark.parametrize("fault", ["no space", "space lost", "small"])
 def test_a_table_without_space_on_the_disk_is_in_memory(fault, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
     if fault == "no space":
-        monkeypatch.setattr(module.shutil, "disk_usage", lambda _: SimpleNamespace(free=1e3))
+        monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1e3))
     if fault == "space lost":
         monkeypatch.setattr(os, "posix_fallocate", full)
     size = 1000 if fault == "small" else 1_000_000

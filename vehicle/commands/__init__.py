@@ -12,6 +12,7 @@ COMMANDS = (
     "inspect",
     "loads",
     "spectra",
+    "levels",
     "orders",
     "body",
     "compare",

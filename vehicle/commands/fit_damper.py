@@ -27,7 +27,7 @@ def parser() -> Parser:
     setting_options(parser, DamperFitSettings, "positive")  # fmt: skip
     setting_options(parser, DamperFitSettings, "condition")  # fmt: skip
     setting_options(parser, DamperFitSettings, "pattern")  # fmt: skip
-    output_options(parser, None, default=f"damper.toml, {TABLE}, damper.png and {REPORT} in runs/damper")
+    output_options(parser, None, default=f"damper.toml, damper_band.csv, {TABLE}, pictures and {REPORT} in runs/damper")
     head_options(parser)
     parser.add_argument("--json", action="store_true", help="print law, parameters and errors as JSON")
     message_options(parser, quiet=True)
@@ -76,9 +76,10 @@ class DamperFitSettings(Settings):
 
 
 def _job(settings: DamperFitSettings, console: Console) -> None:
-    from vehicle.drawing.rendering.damper_plot import plot_damper, plot_settings
+    from vehicle.drawing.rendering.damper_plot import plot_band, plot_damper, plot_settings
     from vehicle.runs.output.folder import Content, write_together
     from vehicle.signals.records.choice import pairs
+    from vehicle.studies.dampers.damper_band import band_of, band_text
     from vehicle.studies.dampers.damper_page import damper_page, loops_of
     from vehicle.studies.dampers.damper_text import caption_of, fit_json, summary_lines, tests_text, vehicle_lines
     from vehicle.studies.dampers.fitted_damper import fit_damper
@@ -107,6 +108,9 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
         contents[f"damper{fitted.name}.png"] = partial(
             plot_damper, loops=loops_of(fitted), title=title, caption=caption_of(fitted)
         )
+        band = band_of(fitted)
+        contents[f"damper_band{fitted.name}.csv"] = band_text(band)
+        contents[f"damper_band{fitted.name}.png"] = partial(plot_band, band=band, tested=fitted.speeds)
     if len(fits) > 1:
         lines, picture = CONTROL
         contents[lines] = control_lines(fits)

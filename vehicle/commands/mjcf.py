@@ -7,6 +7,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.options import command_parser, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, part
@@ -37,6 +38,11 @@ def _job(settings: MjcfSettings, console: Console) -> None:
     from vehicle.runs.output.model_files import write_mjcf
 
     car = Car.load(settings.car.vehicle, settings.car.overrides)
+    if car.vehicle.driving.accelerates:
+        raise ConfigurationError(
+            "mjcf: writes the car at rest, and the vehicle sets a steady acceleration; set driving.acceleration and "
+            "driving.lateral to 0"
+        )
     files = mjcf_files(car.vehicle, car.trimmed_body)
     # With --force the files of others in the folder stay, so that it is not replaced as a whole.
     folder = settings.destination.output or FOLDER

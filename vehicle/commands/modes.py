@@ -11,6 +11,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.options import (
     FORCE_HELP,
+    acceleration_options,
     command_parser,
     damper_option,
     message_options,
@@ -79,7 +80,7 @@ class ModesSettings(Settings):
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("modes", "Compute the modes of the complete car up to 60 Hz.")
-    vehicle_options(parser)
+    acceleration_options(vehicle_options(parser))
     damper_option(parser)
     setting_options(parser, ModesSettings, "speed")
     parser.add_argument("--json", action="store_true", help="print JSON")

@@ -1,15 +1,16 @@
 """Options of several commands, each defined once, and the settings read from the parsed options."""
 
 import argparse
+import dataclasses
 import sys
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
 from vehicle.commands.parser import Parser
 from vehicle.model.parameters.car_choice import CarChoice
+from vehicle.model.parameters.driving import Driving
 from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings
@@ -72,7 +73,7 @@ def read(options: argparse.Namespace, settings: type[S], /, **more: Any) -> S:
         settings: dataclass; its class need not be one of `Settings`.
         more: values of further fields.
     """
-    for each in fields(settings):  # type: ignore[arg-type]
+    for each in dataclasses.fields(settings):  # type: ignore[arg-type]
         if each.name in more:
             continue
         declared = each.metadata
@@ -91,7 +92,11 @@ def read(options: argparse.Namespace, settings: type[S], /, **more: Any) -> S:
 def car_of(options: argparse.Namespace) -> CarChoice:
     """Return the choice of the car of --vehicle, or of the argument CAR, and --set."""
     file = vars(options).get("car") or vars(options).get("vehicle")
-    return CarChoice(vehicle=file, overrides=tuple(options.overrides))
+    car = CarChoice(vehicle=file, overrides=tuple(options.overrides))
+    for name in STEADY:
+        if (value := vars(options).get(name)) is not None:
+            car = car.with_(f"--{name}", f"driving.{name}={value!r}")
+    return car
 
 
 def destination_of(options: argparse.Namespace) -> Destination:
@@ -116,6 +121,17 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
     group.add_argument("--vehicle", type=vehicle_file, metavar="FILE.toml", help=VEHICLE_HELP)
     set_option(group)
     return group
+
+
+STEADY = ("acceleration", "lateral")
+"""Parameters of a steady acceleration, with an option each."""
+
+
+def acceleration_options(group: argparse._ActionsContainer) -> None:
+    """Add --acceleration and --lateral, the steady acceleration in which the car rides; see `Driving`."""
+    meanings = {entry.name: entry.metadata["meaning"] for entry in dataclasses.fields(Driving) if entry.name in STEADY}
+    for name in STEADY:
+        group.add_argument(f"--{name}", type=float, metavar="M/S2", help=f"{meanings[name]} [m/s2]; default: 0")
 
 
 def set_option(parser: argparse._ActionsContainer) -> None:

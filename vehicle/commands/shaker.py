@@ -19,6 +19,7 @@ from vehicle.commands.input_options import (
 )
 from vehicle.commands.measured_options import measured_options
 from vehicle.commands.options import (
+    acceleration_options,
     car_of,
     command_parser,
     destination_of,
@@ -65,6 +66,7 @@ def parser() -> Parser:
     unit_option(read)
     output_options(parser, None, default="runs/<input stem> or runs/road_C_80")
     car = vehicle_options(parser)
+    acceleration_options(car)
     setting_options(car, ShakerSettings, "controller", "trust")
     setting_options(
         parser, ShakerSettings, "engine", "stated_errors", "skip", "timestep", "time_format", "channels", "formats"

@@ -9,6 +9,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.options import (
     VEHICLE_HELP,
+    acceleration_options,
     command_parser,
     extra_output_options,
     message_options,
@@ -28,6 +29,7 @@ def parser() -> Parser:
     parser = command_parser("show", "Print masses, stiffnesses, frequencies, geometry and parameters of a car.")
     parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
     set_option(parser)
+    acceleration_options(parser)
     setting_options(parser, ShowSettings, "search")
     extra_output_options(parser, "car.png (drawing with dimensions), car.json and parameters.csv")
     parser.former("--vehicle", "--vehicle: no such option; name the car first, for example `show sedan`")

@@ -106,12 +106,15 @@ def _comfort(summary: RunSummary) -> list[str]:
             f"{high:g} Hz ({axes}); {values['weighted']:.4f} m/s2{plus.get('weighted', '')} weighted RMS (ISO 2631-1)"
             + (f"; {interval_words(summary, points['seat_rail'])}" if half else _event_words(summary))
         )
-    if values := lines and points["seat_rail"].over_class:
-        each = [f"{number(of['value'], 4)} m/s2 ± {number(100.0 * of['half_interval'] / of['value'], 2)} % {name}"
-                for name, of in values.items()]  # fmt: skip
+    over_class = points["seat_rail"].over_class if "seat_rail" in points else None
+    if over_class:
+        each = [
+            f"{number(of['value'], 4)} m/s2 ± {number(100.0 * of['half_interval'] / of['value'], 2)} % {name}"
+            for name, of in over_class.items()
+        ]
         lines.append(
             f"            all roads of this class {', '.join(each)}: corrected by the linear car, which explains "
-            f"{number(100.0 * min(of['explained'] for of in values.values()))} % of the scatter"
+            f"{number(100.0 * min(of['explained'] for of in over_class.values()))} % of the scatter"
         )
     if (rim := summary.steering_wheel_rim) is not None:
         axes = ", ".join(f"{axis} {rim.weighted_rms[axis]:.4f}" for axis in "xyz")

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
+from vehicle.engines.linear import mode_shares as module
 from vehicle.engines.linear.forced_response import force_amplitudes, unit_response
 from vehicle.engines.linear.mode_shares import forced_mode_shares, mode_shares
 from vehicle.runs.car import Car
@@ -26,6 +27,16 @@ def test_the_parts_add_up_to_the_response(name, stuck):
         "Linear system", f"sum of the parts of the modes of {name}", result.acceleration, expected, rel=1e-7,
         unit="m/s2", source="second derivation: frequency response by partial fractions to each plate",
     )  # fmt: skip
+
+
+def test_blocks_of_lines_give_the_shares_of_the_whole(monkeypatch):
+    car, lines = Car.load("sedan"), np.linspace(1.0, 30.0, 50)
+    plates = np.exp(1j * np.arange(4 * lines.size).reshape(4, -1) ** 2)
+    whole = mode_shares(car.matrices.system, CHANNEL, lines, plates, stuck=False)
+    monkeypatch.setattr(module, "LINES_AT_ONCE", 7)
+    blocks = mode_shares(car.matrices.system, CHANNEL, lines, plates, stuck=False)
+    np.testing.assert_allclose(blocks.acceleration, whole.acceleration, rtol=1e-9)
+    np.testing.assert_allclose(blocks.shares, whole.shares, atol=1e-9 * np.max(np.abs(whole.shares)))
 
 
 def test_a_sine_at_a_resonance_belongs_to_its_mode():

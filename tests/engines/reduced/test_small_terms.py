@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, _about_rest
+from vehicle.engines.linear.displacement_laws import _about_rest
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping, equivalent_laws
 from vehicle.engines.reduced.plate_samples import plate_samples
+from vehicle.engines.simulation.force_differences import DIFFERENCE_STEP
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal
 

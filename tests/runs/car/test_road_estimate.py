@@ -98,11 +98,12 @@ def test_what_the_estimate_does_not_cover_is_refused_by_name(case: str):
 
 
 def test_tyres_that_leave_the_road_are_refused(sedan: Car):
-    """On class E the one-sided tyres of the sedan lift, on class C they do not."""
-    car = sedan.with_({f"{path}.one_sided": True for path in lifting_tyres(sedan.vehicle)})
-    assert car.estimate(road("C", 80)).values["weighted"] > 0.0
-    with pytest.raises(ConfigurationError, match="leaves the road for 12"):
-        car.estimate(road("E", 80))
+    """On class E the one-sided tyres of the sedan lift, and linear ones pull; on class C neither."""
+    one_sided = sedan.with_({f"{path}.one_sided": True for path in lifting_tyres(sedan.vehicle)})
+    for car in (one_sided, sedan):
+        assert car.estimate(road("C", 80)).values["weighted"] > 0.0
+        with pytest.raises(ConfigurationError, match="leaves the road for 12"):
+            car.estimate(road("E", 80))
 
 
 def test_the_share_of_a_gaussian_force_beyond_the_friction():

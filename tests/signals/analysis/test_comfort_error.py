@@ -111,11 +111,11 @@ def test_the_error_with_a_twin_covers_what_the_twin_does_not_explain():
     of_twin, left = 30.0 * complex_waves(rng, count), complex_waves(rng, count)
     value = 100.0 + rng.standard_normal(count)
     # A run that follows its twin with the factor 0.9: friction makes a rough stretch a little smoother.
-    pair = paired(value, np.full(count, 30.0), 0.9 * of_twin + left, np.full(count, 90.0), of_twin)
+    pair = paired(np.full(count, 30.0), 0.9 * of_twin + left, of_twin)
     assert np.mean(np.abs(value - 100.0) < NORMAL_95 * pair.error) == pytest.approx(0.95, abs=0.005)
     assert np.median(pair.explained) == pytest.approx(1.0 - 1.0 / (1.0 + 0.81 * 900.0), abs=1e-3)
     # Of two cars with equal twins, what is left of both counts.
-    other = paired(value, value, 0.8 * of_twin + complex_waves(rng, count), np.full(count, 80.0), of_twin)
+    other = paired(value, 0.8 * of_twin + complex_waves(rng, count), of_twin)
     gap = np.sqrt(2.0) * rng.standard_normal(count)
     stated = STUDENT_95 * difference_error(pair.waves, other.waves)
     assert np.mean(np.abs(gap) < stated) == pytest.approx(0.95, abs=0.01)
@@ -123,10 +123,10 @@ def test_the_error_with_a_twin_covers_what_the_twin_does_not_explain():
 
 def test_a_twin_that_explains_less_than_half_leaves_the_error_of_the_run():
     rng, count = np.random.default_rng(8), 500
-    waves, value = complex_waves(rng, count), np.full(count, 2.0)
-    stranger = paired(value, np.full(count, 0.1), waves, value, complex_waves(rng, count))
+    waves = complex_waves(rng, count)
+    stranger = paired(np.full(count, 0.1), waves, complex_waves(rng, count))
     weak = stranger.explained < 0.5
     assert 0.8 < np.mean(weak) < 1.0 and np.all(stranger.error[weak] == 0.1)
     assert np.all(stranger.error[~weak] == wave_error(stranger.waves)[~weak])
-    at_rest = paired(value, np.full(count, 0.1), waves, np.zeros(count), np.zeros_like(waves))
+    at_rest = paired(np.full(count, 0.1), waves, np.zeros_like(waves))
     assert np.all(at_rest.waves == waves) and np.all(at_rest.error == 0.1) and np.all(np.isnan(at_rest.explained))

@@ -9,7 +9,8 @@ import pytest
 from tests.benchmarks.known_dampers import KNOWN, deviations, is_right, law_of, records_of, values_of
 from tests.validation import validated
 from vehicle.signals.records.choice import Choice
-from vehicle.studies.dampers.damper_fit import choose_law, finished, judged
+from vehicle.studies.dampers.damper_choice import choose_law, judged
+from vehicle.studies.dampers.damper_fit import finished
 from vehicle.studies.dampers.damper_law import DamperLaw
 from vehicle.studies.dampers.damper_test import read_test
 from vehicle.studies.dampers.fitted_damper import FittedDamper

@@ -11,7 +11,7 @@ from vehicle.studies.dampers.damper_force import Motion, force_and_slopes
 from vehicle.studies.dampers.damper_law import DamperLaw
 
 NUMBERS = {
-    "gas_force": 100.0, "friction": 60.0, "friction_at_rest": 90.0, "stribeck_velocity": 0.01, "gas_stiffness": 2e3,
+    "gas_force": 100.0, "friction": 60.0, "friction_at_rest": 30.0, "stribeck_velocity": 0.01, "gas_stiffness": 2e3,
     "series_stiffness": 2e6, "slider_stroke_1": 3e-4, "slider_stroke_2": 1e-4, "slider_limit_1": 70.0,
     "slider_limit_2": 40.0, "velocity_1": 0.015, "velocity_2": 0.02, "damping_1": 4000.0, "damping_2": 1500.0,
     "damping_3": 600.0,

@@ -30,7 +30,7 @@ SEDAN = {
 
 def made(folder, *words, source="sedan"):
     """Run the command; return the printed checks and the car that is read from its file."""
-    assert main([str(folder), "--from", source, "--json", *words]) == 0
+    assert main([str(folder), "--from", str(source), "--json", *words]) == 0
     return Car.load(folder / "vehicle.toml")
 
 
@@ -258,3 +258,18 @@ def test_contradictions_are_found_before_any_computation():
         stated(damping_ratio_front=0.3, damper_curve_front="a.csv")
     with pytest.raises(ConfigurationError, match="did you mean kerb_mass"):
         stated(kerb_mas=3.0)
+
+
+def test_a_template_that_brakes_is_taken_at_rest(tmp_path):
+    """Under -4 m/s2 the front axle has 600 N more a wheel, and damping and springs would follow that load."""
+    file = tmp_path / "braking.toml"
+    file.write_text('base = "sedan"\nname = "braking"\n[driving]\nacceleration = -4.0\n')
+    resting, braking = (
+        made(tmp_path / f"from_{name}", "--kerb-mass", "1500", source=source)
+        for name, source in (("sedan", "sedan"), ("braking", file))
+    )
+    assert not braking.vehicle.driving.accelerates
+    assert braking.static.tyre_load == resting.static.tyre_load
+    assert [damper.law for damper in braking.vehicle.composition.dampers] == [
+        damper.law for damper in resting.vehicle.composition.dampers
+    ]

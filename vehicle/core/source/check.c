@@ -177,6 +177,7 @@ EXPORT const char *core_check_simulation(const Simulation *s, int64_t positions,
   NEED("applied.nodes", within(&a->nodes, 0, ends) && a->shapes.n[0] == a->nodes.n[0]);
   NEED("applied.shapes", a->shapes.n[0] == 0 || a->shapes.n[1] == 6 * e->modes.size);
   NEED("push", s->state.push.n[0] == (ends + a->torques.n[0] + e->rolling.tyres.n[0] > 0 ? speeds : 0));
+  NEED("rolling.rest", e->rolling.rest.n[0] == (e->rolling.tyres.n[0] > 0 ? 2 + 3 * e->rolling.tyres.n[0] : 0));
   NEED("fluids.elements", within(&e->fluids.elements, 0, elements) && within(&e->fluids.dofs, 0, speeds));
   return NULL;
 }

@@ -236,6 +236,15 @@
 #define LOOP_FIELDS(F) \
   F(Order, order) F(Plates, plates) F(Sources, sources) F(Samples, samples)
 
+/* Damper behind a series stiffness under a measured motion, see damper_rig.c. rates: a_0, a_1, a_2 of each sample; knots:
+ * n breakpoints; slopes, offsets: of the n + 1 segments around them; stiffness, limit, forces: of the elements; spring,
+ * gas, offset: K, k_g [N/m], F_0 [N]; drop: friction at rest minus sliding [N]; critical: vs [m/s]; first: F [N].
+ * Written: deflection s [m], inner w [m/s], and 1 in sticking where an element sticks. */
+#define DAMPER_RIG_FIELDS(F) \
+  F(Vector, displacement) F(Vector, velocity) F(Table, rates) F(Vector, knots) F(Vector, slopes) F(Vector, offsets) \
+  F(Vector, stiffness) F(Vector, limit) F(Vector, forces) F(double, spring) F(double, gas) F(double, offset) \
+  F(double, drop) F(double, critical) F(double, first) F(Vector, deflection) F(Vector, inner) F(Texts, sticking)
+
 /* All records, each after those that it contains; arrays stand between the laws and the others. */
 #define EACH_LAW(S) \
   S(DamperLaw, DAMPER_LAW_FIELDS) S(Setting, SETTING_FIELDS) S(Call, CALL_FIELDS) S(OwnLaw, OWN_LAW_FIELDS)
@@ -251,7 +260,7 @@
   S(Layout, LAYOUT_FIELDS) \
   S(Weights, WEIGHTS_FIELDS) S(State, STATE_FIELDS) S(Solution, SOLUTION_FIELDS) \
   S(Simulation, SIMULATION_FIELDS) S(Order, ORDER_FIELDS) S(Plates, PLATES_FIELDS) S(Sources, SOURCES_FIELDS) \
-  S(Samples, SAMPLES_FIELDS) S(Loop, LOOP_FIELDS)
+  S(Samples, SAMPLES_FIELDS) S(Loop, LOOP_FIELDS) S(DamperRig, DAMPER_RIG_FIELDS)
 
 #define FIELD(kind, name) kind name;
 #define RECORD(name, fields) typedef struct { fields(FIELD) } name;

@@ -13,6 +13,7 @@
  * - the slope of the road, F_z tan(beta) along x at the wheel centre, with the present load; tan(beta) is that of the
  *   cams of the tyre, or w'/V;
  * - the aligning moment, trail times side force, on the hub;
+ * - the turn of a steady brake, drive or side force (X, Y) with the heading, psi (-Y, X);
  * - the gyroscopic moment -omega x (H e) on the hub, H = -I V/R, carried to the present by the last two velocities;
  * - the course control on the body: along x, along y at the front axle, where a driver steers, and in yaw,
  *
@@ -53,6 +54,7 @@ static void rolling_rows(const Now *o, const Layout *e) {
 
 /* Update heading and angular velocity of the hubs once for each time, and add the heading to the side slip.
  *
+ * Headings count from those at rest, where each wheel points as its static side force needs.
  * At t = 0, where the car is linearised, the side slip has no heading. */
 static void headings(const Now *o, const Layout *e, State *s) {
   const Rolling *r = &e->rolling;
@@ -63,7 +65,7 @@ static void headings(const Now *o, const Layout *e, State *s) {
       const double *frame = frame_of(o, r->hubs.at[n]);
       double *turning = ROW(s->turning, n);
       past[n] = present[n];
-      present[n] = atan2(-frame[1], frame[4]);
+      present[n] = atan2(-frame[1], frame[4]) - r->rest.at[2 + n];
       for (int i = 0; i < 3; i++) {
         turning[3 + i] = turning[i];
         turning[i] = 0.0;
@@ -122,6 +124,13 @@ static void rolling_forces(const Now *o, const Layout *e, const Weights *c, Stat
     for (int i = 0; i < 3; i++) point[i] += site[i];
     velocity_at(o, dof, tree, point, velocity);
     push[dof] += load[0] * velocity[0] + dot3(load + 1, motion_of(o, dof));
+    /* (X, Y) of a car in steady acceleration, after the place and the headings at rest. */
+    const double *steady = r->rest.at + 2 + r->tyres.n[0] + 2 * n;
+    if (steady[0] != 0.0 || steady[1] != 0.0) {
+      const int64_t row = AT(e->bushings.rows, r->tyres.at[n], 0);
+      const double turned = steady[0] * row_of(o, row + 1)[dof] - steady[1] * row_of(o, row)[dof];
+      push[dof] += AT(s->heading, 0, n) * turned;
+    }
   }
   hold_course(o, e, push);
 }

@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
 from vehicle.signals.analysis.samples import Vector
 
@@ -63,3 +65,29 @@ def plot_settings(
             axis.plot(list(settings), values, "o-", color=COLOURS[0])
             axis.set(ylabel=label, ylim=(0.0, None))
             axis.tick_params(axis="x", labelrotation=30)
+
+
+def plot_band(path: Path, band: tuple[Vector, Vector, Vector, Vector], tested: tuple[float, float]) -> None:
+    """Write the picture of the force over the velocity with its band.
+
+    Args:
+        band: velocity [m/s], force, lowest and highest force [N]; (n,) each.
+        tested: highest velocities of the slowest and of the fastest test [m/s].
+    """
+    velocity, force, lowest, highest = band
+    with saved_figure(path, (9.0, 4.2)) as figure:
+        titles = {tested[0]: "up to the slowest test", velocity[-1]: "up to twice the fastest test"}
+        for axis, (top, title) in zip(figure.subplots(1, 2), titles.items(), strict=True):
+            # Friction jumps at rest: each side has its own line.
+            for sign in (-1.0, 1.0):
+                shown = (sign * velocity > 0.0) & (np.abs(velocity) <= 1.0001 * top)
+                axis.fill_between(1e3 * velocity[shown], lowest[shown], highest[shown], color=COLOURS[0], alpha=0.25,
+                                  linewidth=0.0, label="band of all accepted laws" if sign > 0.0 else None)  # fmt: skip
+                axis.plot(1e3 * velocity[shown], force[shown], color=COLOURS[0],
+                          label="chosen law" if sign > 0.0 else None)  # fmt: skip
+                if top > tested[1]:
+                    axis.axvline(1e3 * sign * tested[1], color=COLOURS[1], linestyle=LINES[1], linewidth=0.9,
+                                 label="fastest test" if sign > 0.0 else None)  # fmt: skip
+            axis.set(xlabel="velocity [mm/s]", title=title)
+            axis.legend(loc="upper left")
+        figure.axes[0].set(ylabel="force of curve and sliding friction [N]")

@@ -248,10 +248,11 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
 
 def _range(runs: Sequence[RecordedRun], channels: Sequence[str], scale: float) -> tuple[float, float]:
     """Return the limits of an axis that shows channels of several runs: their extremes and a margin of 5 %."""
-    values = [run.recording.channels[name] for run in runs for name in channels if name in run.recording.channels]
-    if not values:
+    recordings = [(run.recording, name) for run in runs for name in channels if name in run.recording.channels]
+    if not recordings:
         return -1.0, 1.0
-    low, high = scale * min(float(part.min()) for part in values), scale * max(float(part.max()) for part in values)
+    extremes = [(float(values.min()), float(values.max())) for values in (each[name] for each, name in recordings)]
+    low, high = scale * min(low for low, _ in extremes), scale * max(high for _, high in extremes)
     margin = 0.05 * (high - low) or 1.0
     return low - margin, high + margin
 

@@ -6,7 +6,7 @@ simulation applies, so it contains the geometric stiffness of gravity and preloa
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -22,11 +22,13 @@ from vehicle.engines.linear.damper_elements import (
     side_rows,
     slider_elements,
 )
-from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, DisplacementLaw, displacement_laws
-from vehicle.engines.linear.rolling_terms import rolling_terms
+from vehicle.engines.linear.displacement_laws import DisplacementLaw, displacement_laws
+from vehicle.engines.linear.rolling_terms import following_stiffness, rolling_terms
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.engines.simulation.applied_forces import force_lines, force_rows, tyre_inputs
 from vehicle.engines.simulation.callbacks import standing_data
+from vehicle.engines.simulation.element_records import Modes
+from vehicle.engines.simulation.force_differences import differences
 from vehicle.engines.simulation.law_arrays import fluid_coordinates, model_numbers
 from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
@@ -51,6 +53,7 @@ class CarMatrices:
         dampers: velocity coordinates of the damper joints; (d,).
         damper_names: names of the dampers, "damper_" and the wheel at a corner; an axle may have none.
         viscous: damping constants of the dampers [N s/m], softest settings of controlled ones; (d,).
+        strokes: extensions of the dampers at rest [m]; None for the design position, zero.
         sensors: rows that map u' to the velocities along controlled dampers, on the wheel and on the body; (2 k, n).
         laws: nonlinear laws over displacement; their difference from the tangent is not in the matrices.
         tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (w,).
@@ -78,6 +81,7 @@ class CarMatrices:
     dampers: Indices
     damper_names: tuple[str, ...]
     viscous: Vector
+    strokes: Vector | None = None
     sensors: Vector = field(default_factory=lambda: np.zeros((0, 0)))
     laws: tuple[DisplacementLaw, ...] = ()
     one_sided: frozenset[str] = frozenset()
@@ -166,7 +170,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
     data = standing_data(rows)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
-    jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
+    jacobian = rows.element_jacobian(data)
     dofs, still = e.dampers.dofs, np.zeros(len(e.tyres))
     # Rows of velocity and angular velocity, and masses with inertia tensors, of the bodies that are parts.
     rows_of_bodies, masses = dict[str, Vector](), dict[str, Vector]()
@@ -180,6 +184,8 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
             # Principal moments in the axes of the car: R diag(I) R'.
             masses[name][3:, 3:] = frame @ np.diag(model.body_inertia[body]) @ frame.T
     system_of_laws, car_of_laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
+    if len(e.rolling.tyres):
+        stiffness += following_stiffness(rows, jacobian, system_of_laws["branch_drifts"])
     lines, coefficients = force_lines(forces)
     slips, plate_heights = tyre_inputs(forces, e, wheels_of(model))
     rolling_bodies = set(model.dof_bodyid[e.rolling.spins].tolist())
@@ -194,13 +200,12 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[Pla
             constraints=jacobian[e.joints.ravel()],
             load=np.zeros(model.nv),
             cyclic=tuple(e.rolling.spins.tolist()),
-            outputs={
-                name: np.concatenate([row, still]) for name, row in _outputs(model, data, e.modes.velocities).items()
-            },
+            outputs={name: np.concatenate([row, still]) for name, row in _outputs(model, data, e.modes).items()},
             **system_of_laws,
         ),
         dampers=dofs,
         damper_names=rows.laws.dampers,
+        strokes=model.qpos0[e.dampers.places],
         **car_of_laws,
         sensors=_sensors(rows, data),
         one_sided=frozenset(
@@ -236,13 +241,12 @@ def law_matrices(
 
     Args:
         rows: rows of the car at rest.
-        jacobian: Jacobian of the rows; (rows, n).
+        jacobian: Jacobian of the rows along the axes of the laws; (rows, n).
         joint_damping: damping inside joints; (n,).
         preload: static forces of the rows.
     """
     e, bushings, dofs = rows.layout, rows.layout.bushings, rows.layout.dampers.dofs
     viscous = e.dampers.laws["viscous_damping"]
-    # In the design position all carriers are parallel to the vehicle frame, so rows are element axes.
     row_damping = np.zeros(e.row_count)
     row_damping[bushings.rows] = bushings.damping
     # C = J' B J, then what acts in single coordinates.
@@ -284,56 +288,30 @@ def law_matrices(
     )
 
 
-def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector]) -> Vector:
-    """Return central differences of a function over the velocity coordinates in the design position; (..., n).
-
-    Args:
-        rows: rows of the car at rest.
-        read: function of a state with written rows that returns an array (...); only the solution of the step is
-            missing in the state.
-    """
-    model = rows.model
-    data = mujoco.MjData(model)
-    start, direction, columns = data.qpos.copy(), np.zeros(model.nv), []
-    for column in range(model.nv):
-        ends = []
-        for sign in (1.0, -1.0):
-            data.qpos[:] = start
-            direction[column] = sign
-            mujoco.mj_integratePos(model, data.qpos, direction, DIFFERENCE_STEP)
-            # Run a step without the solution of the rows, which would double the cost.
-            mujoco.mj_fwdPosition(model, data)
-            mujoco.mj_fwdVelocity(model, data)
-            rows(model, data)
-            ends.append(read(data))
-        direction[column] = 0.0
-        columns.append((ends[0] - ends[1]) / (2.0 * DIFFERENCE_STEP))
-    return np.stack(columns, axis=-1)
-
-
 def _sensors(rows: Rows, data: mujoco.MjData) -> Vector:
     """Return the rows of the velocities that the sensors of controlled dampers measure."""
     model, controls = rows.model, rows.layout.controls
     sensor_rows = np.zeros((2 * len(controls.dampers), model.nv))
+    turn = data.xmat[rows.layout.modes.body].reshape(3, 3)
     for row, (site, shape) in enumerate(zip(controls.sites.ravel(), controls.shapes, strict=True)):
         jacobian = np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, jacobian, None, int(site))
         # A point of the flexible body moves with its modes, too.
-        jacobian[:, rows.layout.modes.velocities] += shape.reshape(3, -1)
+        jacobian[:, rows.layout.modes.velocities] += turn @ shape.reshape(3, -1)
         damper = rows.layout.dampers.dofs[controls.dampers[row // 2]]
         sensor_rows[row] = data.xaxis[model.dof_jntid[damper]] @ jacobian
     return sensor_rows
 
 
-def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[str, Vector]:
+def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: Modes) -> dict[str, Vector]:
     """Return the rows of all acceleration channels."""
-    outputs = {}
+    outputs, turn = {}, data.xmat[modes.body].reshape(3, 3)
     for point in places_of(model):
         jacobian = np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, jacobian, None, model.site(f"place/{point}").id)
         shape = numeric(model, f"shape/place/{point}")
         if shape is not None:
-            jacobian[:, modes] = shape.reshape(3, -1)
+            jacobian[:, modes.velocities] = turn @ shape.reshape(3, -1)
         for axis, row in zip(AXES, jacobian, strict=True):
             outputs[f"{point}_acc_{axis}"] = row
     return outputs

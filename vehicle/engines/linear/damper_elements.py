@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
@@ -110,6 +111,8 @@ def side_rows(rows: Rows, jacobian: Vector, preload: Vector, laws: Sequence[Disp
     dampers = np.flatnonzero(e.dampers.laws["side_force"] > 0.0)
     if not dampers.size:
         return no_side_forces()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
     # (element, axis) to the number of its Maxwell branch, among those that exist.
     branches = np.cumsum(b.branch_stiffness.ravel() > 0.0).reshape(b.rows.shape) - 1
     count = int(np.count_nonzero(b.branch_stiffness > 0.0))
@@ -117,14 +120,13 @@ def side_rows(rows: Rows, jacobian: Vector, preload: Vector, laws: Sequence[Disp
     displacement, velocity = np.zeros((2, len(dampers), 2, jacobian.shape[1]))
     by_law = np.zeros((len(dampers), 2, len(laws)))
     for side, damper in enumerate(dampers):
-        # In the design position all frames are parallel.
         # Two directions at right angles to the slide: the rows of V' beyond the first are its null space; (2, 3).
-        across = np.linalg.svd(model.jnt_axis[model.dof_jntid[e.dampers.dofs[damper]]][None])[2][1:]
+        across = np.linalg.svd(data.xaxis[model.dof_jntid[e.dampers.dofs[damper]]][None])[2][1:]
         for k in np.flatnonzero(e.sides.dampers == damper):
             n = e.sides.elements[k]
             # The rod takes the forces of its bushings: f = p - K r - B r' - f2 - g along the directions of each law.
             way = rows.directions.get(int(n), np.eye(3))
-            along = e.sides.signs[k] * across @ way.T
+            along = e.sides.signs[k] * across @ data.xmat[b.carriers[n]].reshape(3, 3) @ way.T
             static[side] += along @ preload[b.rows[n]]
             displacement[side] -= along @ (b.stiffness[n][:, None] * jacobian[b.rows[n]])
             velocity[side] -= along @ (b.damping[n][:, None] * jacobian[b.rows[n]])

@@ -26,15 +26,13 @@ import numpy.typing as npt
 
 from vehicle.arrays import Vector
 from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.force_differences import DIFFERENCE_STEP
 from vehicle.engines.simulation.row_layout import wheels_of
 from vehicle.engines.simulation.rows import Rows
 from vehicle.names import AXES
 
 BUSHING, SPRING, STOP, DECOUPLER = range(4)
 """Types of elements, see `vehicle.engines.simulation.element_records.Tables`."""
-
-DIFFERENCE_STEP = 1e-6
-"""Step [m, rad, kg^1/2 m] of the central differences of the forces: truncation and round-off are both below 1e-8."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -127,6 +125,7 @@ def displacement_laws(rows: Rows, jacobian: Vector, preload: Vector) -> tuple[Di
             name = name.replace("/", " of ", 1)
         else:
             row, name = np.eye(rows.model.nv)[e.dampers.dofs[element]], f"stop of damper {element + 1}"
+            position = float(rows.model.qpos0[e.dampers.places[element]])
         curve = curve_of(tables, index)
         changes = np.diff(curve.slopes)
         # A point on the line through its neighbours is not a breakpoint.

@@ -22,10 +22,11 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
-from vehicle.engines.linear.displacement_laws import BUSHING, DIFFERENCE_STEP, SPRING, STOP, law_rows
+from vehicle.engines.linear.displacement_laws import BUSHING, SPRING, STOP, law_rows
 from vehicle.engines.linear.part_motions import cross_matrix
 from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.force_differences import DIFFERENCE_STEP
 from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordinates
 from vehicle.engines.simulation.rows import Rows
 from vehicle.model.laws.curve import Curve
@@ -163,12 +164,15 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
         strain = float(model.qpos0[qpos_index]) - unstrained
         terms_of[name] = -spring * strain, {"displacement": -spring * unit, "velocity": -damping * unit}
     body = int(load_places.bodies[0])
-    for name, part, offset, _ in load_places.wheels:
-        centre, part_motion, body_motion = data.xpos[part] + offset, np.zeros((3, model.nv)), np.zeros((3, model.nv))
-        # Travel: height of the wheel centre less that of the same point of the body.
+    upwards = data.xmat[body].reshape(3, 3)[:, 2]
+    for name, part, offset, height in load_places.wheels:
+        centre = data.xpos[part] + data.xmat[part].reshape(3, 3) @ offset
+        part_motion, body_motion = np.zeros((2, 3, model.nv))
+        # Travel: height of the wheel centre in the axes of the body, less the height of the same point on the body.
         mujoco.mj_jac(model, data, part_motion, None, centre, part)
         mujoco.mj_jac(model, data, body_motion, None, centre, body)
-        terms_of[name] = 0.0, {"displacement": (part_motion - body_motion)[2]}
+        travel = float(upwards @ (centre - data.xpos[body])) - height if car.moved else 0.0
+        terms_of[name] = travel, {"displacement": upwards @ (part_motion - body_motion)}
     selected = [terms_of[name] for name in load_places.names]
     arrays = {
         field: np.array([terms.get(field, np.zeros(width)) for _, terms in selected]).reshape(len(selected), width)
@@ -178,7 +182,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
 
 
 def stop_rows(matrices: CarMatrices, dampers: Sequence[Damper]) -> LoadRows:
-    """Return the forces F(0) + k d + g of the stops of dampers, positive in extension, as rows of loads.
+    """Return the forces F + k d + g of the stops of dampers, positive in extension, as rows of loads.
 
     Args:
         matrices: matrices of the car.
@@ -189,8 +193,9 @@ def stop_rows(matrices: CarMatrices, dampers: Sequence[Damper]) -> LoadRows:
         if damper.stop is None:
             continue
         curve = Curve.through(damper.stop.displacement, damper.stop.force)
-        # F(0), and the tangent that K contains, by the same difference.
-        below, force, above = curve.force(np.array([-DIFFERENCE_STEP, 0.0, DIFFERENCE_STEP]))
+        # F at rest, and the tangent that K contains, by the same difference.
+        ends = np.array([-DIFFERENCE_STEP, 0.0, DIFFERENCE_STEP])
+        below, force, above = curve.force(ends if matrices.strokes is None else matrices.strokes[index] + ends)
         names.append(f"{name}_stop_force")
         static.append(force)
         displacement.append((above - below) / (2.0 * DIFFERENCE_STEP) * matrices.system.slide_rows[index])

@@ -22,6 +22,9 @@ from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.engines.linear.system import LinearSystem
 
+LINES_AT_ONCE = 2**14
+"""Lines whose poles are computed together, which limits the memory: 50 MB for 181 poles."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ModeShares:
@@ -57,7 +60,7 @@ def mode_shares(
     w = driven.shape[0]
     # (b0 + s b1)/(s - p) is (b0 + p b1)/(s - p) + b1, and b1 moves no coordinate at once.
     residues = inputs[:, :w] + poles[:, None] * inputs[:, w:]
-    return _shares(form, channel, lines, poles, vectors, residues @ driven, driven)
+    return _shares(form, channel, lines, poles, vectors, residues, driven)
 
 
 def forced_mode_shares(
@@ -81,7 +84,7 @@ def forced_mode_shares(
     # x' = A x + f: velocities by forces, branches by slips.
     states = np.concatenate([np.zeros(form.placed), pushed, system.branch_stiffness * slips])
     poles, vectors = np.linalg.eig(form.state)
-    return _shares(form, channel, np.array([s]), poles, vectors, np.linalg.solve(vectors, states)[:, None])
+    return _shares(form, channel, np.array([s]), poles, vectors, np.linalg.solve(vectors, states)[:, None], None)
 
 
 def _shares(
@@ -91,17 +94,25 @@ def _shares(
     poles: Complex,
     vectors: Complex,
     residues: Complex,
-    plates: Complex | None = None,
+    plates: Complex | None,
 ) -> ModeShares:
-    """Return the shares from what drives each pole (s, m) at the lines jw (m,), and from the plates (w, m)."""
+    """Return the shares at the lines jw (m,) of poles driven by plates (w, m) with residues (s, w), or by (s, 1)."""
     row, direct = form.output(channel)
-    parts = lines**2 * (row @ vectors[: row.shape[0]])[:, None] * residues / (lines - poles[:, None])
-    acceleration = parts.sum(axis=0)
-    if plates is not None:
-        acceleration = acceleration + lines**2 * (direct @ plates)
-    power = float(np.sum(np.abs(acceleration) ** 2)) or 1.0
+    outputs = (row @ vectors[: row.shape[0]])[:, None]
+    acceleration = np.empty(lines.size, dtype=np.complex128)
+    power, in_phase = 0.0, np.zeros(poles.size)
+    for first in range(0, lines.size, LINES_AT_ONCE):
+        part = slice(first, first + LINES_AT_ONCE)
+        driven = residues if plates is None else residues @ plates[:, part]
+        parts = lines[part] ** 2 * outputs * driven / (lines[part] - poles[:, None])
+        total = parts.sum(axis=0)
+        if plates is not None:
+            total = total + lines[part] ** 2 * (direct @ plates[:, part])
+        acceleration[part] = total
+        power += float(np.sum(np.abs(total) ** 2))
+        in_phase += (parts * np.conj(total)).real.sum(axis=1)
     # Re(a_k a*) over |a|^2, each summed over the lines.
-    in_phase = (parts * np.conj(acceleration)).real.sum(axis=1) / power
+    in_phase /= power or 1.0
     upper = np.flatnonzero(poles.imag > 0.0)
     # LAPACK returns the poles of a real matrix in pairs, the positive imaginary part first.
     return ModeShares(poles=poles[upper], shares=in_phase[upper] + in_phase[upper + 1], acceleration=acceleration)

@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from vehicle.arrays import Complex, Vector
 from vehicle.engines.linear.car_matrices import CarMatrices
-from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, STOP
+from vehicle.engines.linear.displacement_laws import STOP
 from vehicle.engines.simulation.callbacks import standing_data
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.force_differences import DIFFERENCE_STEP
 from vehicle.engines.simulation.row_layout import numeric
 from vehicle.engines.simulation.rows import Rows, joint_springs
 from vehicle.engines.simulation.standing import element_parameter
@@ -70,7 +71,7 @@ def strained_elements(car: CarModel, pole: complex, shape: Complex) -> list[Stra
     rows = Rows(car.model, car.static.preload)
     data = standing_data(rows)
     e, b, dampers = rows.layout, rows.layout.bushings, rows.layout.dampers
-    jacobian = data.efc_J.reshape(e.row_count, car.model.nv)
+    jacobian = rows.element_jacobian(data)
     speed, unit = abs(pole), np.eye(car.model.nv)
     elements: dict[str, Strained] = {}
 

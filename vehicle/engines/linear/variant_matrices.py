@@ -23,11 +23,11 @@ import scipy
 
 from vehicle.arrays import Vector
 from vehicle.engines.linear.body_change import BodyChange, body_change, same_body
-from vehicle.engines.linear.car_matrices import CarMatrices, differences, law_matrices
-from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP
+from vehicle.engines.linear.car_matrices import CarMatrices, law_matrices
 from vehicle.engines.simulation.applied_forces import force_lines
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.force_differences import DIFFERENCE_STEP, differences
 from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.engines.simulation.standing import require_body_modes, require_standing
 from vehicle.engines.simulation.static_trim import AtRest, StaticTrim, at_rest, settle, static_loads, unsolved
@@ -279,6 +279,9 @@ class VariantTerms:
 def same_geometry(vehicle: Vehicle, other: Vehicle) -> bool:
     """Return True if two cars differ only in values of laws, in masses and in solver settings."""
     car, reference, body = vehicle.composition, other.composition, other.body
+    if vehicle.driving.accelerates or other.driving.accelerates:
+        # Every parameter moves the position of a car that accelerates.
+        return False
     if vehicle.gravity != other.gravity or (car.points, car.outputs, car.wheels) != (
         reference.points,
         reference.outputs,

@@ -23,6 +23,7 @@ import numpy as np
 from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.linear_twin import linear_twin
 from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.mapped_table import release
 from vehicle.model.laws.damper import damper_law
 from vehicle.model.parameters.force_elements import Damper
 
@@ -38,7 +39,9 @@ def equivalent_damping(law: Damper, velocity: Vector, force: Vector) -> float:
     power = float(np.mean(velocity**2))
     if power == 0.0:
         return float(damper_law(law).slope(0.0))
-    return float(np.mean((force - force.mean()) * velocity)) / power
+    done = float(np.mean((force - force.mean()) * velocity))
+    release(force)
+    return done / power
 
 
 def equivalent_laws(model: PoleModel, state: Complex, interval: float, samples: int) -> Vector:

@@ -1,7 +1,7 @@
 """Run of a group block by block: up to eight cars in single precision, or one in double precision."""
 
 import ctypes
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,8 +30,13 @@ from vehicle.signals.excitation.signal import Signal
 SAMPLES = 64 * INNER_BLOCK
 """Samples in a block of plate displacements."""
 
-PLATE_SAMPLES = 65_536
-"""Samples in a block of a recorded plate, which limits the memory of their splines."""
+PART = 65_536
+"""Samples of a part of a recording that is computed as a whole, which limits the memory of splines and loads."""
+
+
+def parts_of(samples: int) -> Iterator[slice]:
+    """Return the parts of a recording, of `PART` samples each."""
+    return (slice(first, min(first + PART, samples)) for first in range(0, samples, PART))
 
 
 def time_steps(signal: Signal, record_rate: float, longest: float) -> tuple[int, int]:
@@ -171,8 +176,7 @@ class GroupRun:
                 if wheel in self.driven:
                     plate_rows[row] = 3 * self.driven.index(wheel)
         every, samples = self.every, table.shape[2]
-        for begin in range(0, samples * bool(plate_rows), PLATE_SAMPLES):
-            part = slice(begin, min(begin + PLATE_SAMPLES, samples))
+        for part in parts_of(samples * bool(plate_rows)):
             displacements = self.plates[part.start * every : part.stop * every : every]
             for row, column in plate_rows.items():
                 table[row, rows_of_cars, part] = displacements[:, column]

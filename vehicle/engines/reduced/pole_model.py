@@ -121,6 +121,11 @@ class PoleModel:
         slides = Outputs(poles=self.matrices.system.slide_rows @ self.modal, height=none, velocity=none)
         return slides + self.law_outputs
 
+    @property
+    def forced(self) -> bool:
+        """True if forces or tyres of the car shake it on a level road too."""
+        return bool(self.applied.shape[1] or self.matrices.run_out)
+
     def without_forces(self) -> PoleModel:
         """Return the model without applied forces."""
         return replace(self, applied=self.applied[:, :0], matrices=self.matrices.without_forces())

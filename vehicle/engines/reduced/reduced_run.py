@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from vehicle.engines.linear.load_rows import LoadRows, stop_rows
-from vehicle.engines.reduced.group_run import GroupRun, time_steps
+from vehicle.engines.reduced.group_run import GroupRun, parts_of, time_steps
 from vehicle.engines.reduced.load_outputs import direct_applied, direct_forces, direct_laws, slope_loads
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms
@@ -19,7 +19,7 @@ from vehicle.engines.reduced.validity import LARGEST_STATED_ANGLE
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.tyre_contact import lift_off_notices, pulling_tyres
 from vehicle.engines.simulation.tyre_variation import with_run_out
-from vehicle.mapped_table import table_of
+from vehicle.mapped_table import release, table_of
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units, wheel_channels
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -95,21 +95,25 @@ def simulate_reduced(
     if forms and np.isfinite(table[:, 0, -1]).all():
         errors, read = rms_errors_of(model, forms, dampers, signal, time, record, asked, tyre_load, seated)
     direct = np.hstack([direct_forces(model, loads), direct_laws(model, loads)]) if loads else np.zeros((0, 0))
-    for load, row in zip(loads.names, direct, strict=True) if loads else ():
-        # The direct effect of the forces on u'' at the same instant, in addition to the part of the poles.
-        for force, history in zip(row, table[len(names) :][: len(forces), 0], strict=True):
-            table[names.index(load), 0] += force * history
-    if loads and len(model.matrices.lines):
-        of_forces = direct_applied(model, loads) @ model.matrices.lines.values(time).T
-        for load, history in zip(loads.names, of_forces, strict=True):
-            table[names.index(load), 0] += history
-    if loads and tyres:
-        tyre_forces = dict(zip(tyres.values(), table[len(names) + len(forces) :][: len(tyres), 0], strict=True))
-        on_slopes = slope_loads(model, loads, signal, time, tyre_forces, tyre_load)
-        for load, history in zip(loads.names, on_slopes, strict=True):
-            table[names.index(load), 0] += history
-    for stop in stops.names:
-        table[names.index(stop.replace("_stop_force", "_force")), 0] += table[names.index(stop), 0]
+    for part in parts_of(samples):
+        block = table[:, 0, part]
+        of_forces, of_tyres = block[len(names) :][: len(forces)], block[len(names) + len(forces) :][: len(tyres)]
+        for load, row in zip(loads.names, direct, strict=True) if loads else ():
+            # The direct effect of the forces on u'' at the same instant, in addition to the part of the poles.
+            for force, history in zip(row, of_forces, strict=True):
+                block[names.index(load)] += force * history
+        if loads and len(model.matrices.lines):
+            applied = direct_applied(model, loads) @ model.matrices.lines.values(time[part]).T
+            for load, history in zip(loads.names, applied, strict=True):
+                block[names.index(load)] += history
+        if loads and tyres:
+            tyre_forces = dict(zip(tyres.values(), of_tyres, strict=True))
+            on_slopes = slope_loads(model, loads, signal, time[part], tyre_forces, tyre_load)
+            for load, history in zip(loads.names, on_slopes, strict=True):
+                block[names.index(load)] += history
+        for stop in stops.names:
+            block[names.index(stop.replace("_stop_force", "_force"))] += block[names.index(stop)]
+        release(table)
     histories = dict(zip(asked, table[: len(asked), 0], strict=True))
     one_sided = [wheel for wheel in inputs if wheel in model.matrices.one_sided]
     tyre_forces = {

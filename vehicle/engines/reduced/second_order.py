@@ -303,7 +303,10 @@ def _most_motion(tyre_forces: Sequence[Vector], length: int, number: float) -> l
         number: number of windows; at least one is returned.
     """
     begins = np.arange(0, tyre_forces[0].size, length)
-    squares = sum(np.add.reduceat(np.square(force - force[0]), begins) for force in tyre_forces)
+    squares = np.zeros(begins.size)
+    for force in tyre_forces:
+        squares += np.add.reduceat(np.square(force - force[0]), begins)
+        release(force)
     levels = squares / np.diff(np.append(begins, tyre_forces[0].size))
     return sorted(np.argsort(-levels, kind="stable")[: max(round(number), 1)].tolist())
 

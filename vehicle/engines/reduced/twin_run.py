@@ -19,13 +19,16 @@ import numpy as np
 
 from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping
-from vehicle.engines.reduced.linear_twin import LinearTwin, linear_twin
+from vehicle.engines.reduced.linear_twin import linear_twin
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.threads import one_blas_thread
 
 HIGHEST = 100.0
 """Highest frequency of the twin [Hz], the upper limit of the weightings of ISO 2631-1."""
+
+LINES_AT_ONCE = 2**14
+"""Lines that are computed together, which limits the memory: a number for each pole at each line."""
 
 
 def damping_of_run(model: PoleModel, laws: Sequence[Damper], record: Mapping[str, Vector], span: slice) -> Vector:
@@ -46,50 +49,46 @@ def damping_of_run(model: PoleModel, laws: Sequence[Damper], record: Mapping[str
 
 
 @one_blas_thread()
-def period_twin(
-    model: PoleModel, plates: Mapping[str, Vector], period: float, channels: Sequence[str], samples: int
-) -> LinearTwin:
-    """Return the responses of the twin to the lines of one period of the plates, for any damping constants.
+def twin_lines(
+    model: PoleModel,
+    dampings: Sequence[Vector],
+    plates: Mapping[str, Vector],
+    period: float,
+    channels: Sequence[str],
+    samples: int,
+) -> tuple[Vector, Complex]:
+    """Return the steady state of twins with the same poles as lines k/T up to `HIGHEST`.
 
     Args:
-        model: pole model of the car.
+        model: pole model of the cars.
+        dampings: damping constants c of each twin [N s/m]; (d,) each.
         plates: wheel to displacement over one period [m]; other plates do not move.
         period: length of the period T [s].
         channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers.
         samples: number of samples of a record of one period.
 
     Returns:
-        The twin at the lines k/T up to `HIGHEST`; its outputs are the accelerations and tyre forces in the order of
-        `channels`, to one input, scaled so that |line|^2 = S df.
+        Frequency [Hz], (m,), and lines of the twins, |line|^2 = S df; (c, k, m).
     """
+    names = model.matrices.damper_names
+    outputs = [name for name in channels if name.startswith("tyre_") or "_acc_" in name]
     count = next(iter(plates.values())).size
     lines = np.arange(1, min(int(HIGHEST * period), (min(count, samples) - 1) // 2) + 1)
     spectra = np.zeros((len(model.matrices.system.inputs), 1, lines.size), dtype=np.complex128)  # (w, 1, m)
     for row, wheel in enumerate(model.matrices.system.inputs):
         if wheel in plates:
             spectra[row, 0] = np.fft.rfft(plates[wheel])[lines] * (np.sqrt(2.0) / count)
-    return linear_twin(model, _outputs(channels), lines / period, spectra)
-
-
-def _outputs(channels: Sequence[str]) -> list[str]:
-    return [name for name in channels if name.startswith("tyre_") or "_acc_" in name]
-
-
-def twin_lines(twin: LinearTwin, dampers: Sequence[str], damping: Vector, channels: Sequence[str]) -> Complex:
-    """Return the lines of channels of a twin in its steady state, |line|^2 = S df; (k, m).
-
-    Args:
-        twin: see `period_twin`, with its channels.
-        dampers: names of the dampers.
-        damping: damping constants c [N s/m]; (d,).
-        channels: names of the channels.
-    """
-    velocity = twin.velocities(damping)
-    response = twin.with_velocities(damping, velocity)[:, 0]
-    rows = dict(zip(_outputs(channels), response, strict=True))
-    rows |= {f"{name}_velocity": row for name, row in zip(dampers, velocity[:, 0], strict=True)}
-    rows |= {f"{name}_force": c * row for name, c, row in zip(dampers, damping, velocity[:, 0], strict=True)}
-    return np.array([rows[name] for name in channels])
+    result = np.empty((len(dampings), len(channels), lines.size), dtype=np.complex128)
+    for first in range(0, lines.size, LINES_AT_ONCE):
+        part = slice(first, first + LINES_AT_ONCE)
+        twin = linear_twin(model, outputs, lines[part] / period, spectra[:, :, part])
+        for number, damping in enumerate(dampings):
+            velocity = twin.velocities(damping)
+            rows = dict(zip(outputs, twin.with_velocities(damping, velocity)[:, 0], strict=True))
+            rows |= {f"{name}_velocity": row for name, row in zip(names, velocity[:, 0], strict=True)}
+            rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity[:, 0], strict=True)}
+            result[number, :, part] = [rows[name] for name in channels]
+    return lines / period, result
 
 
 def twin_run(
@@ -103,12 +102,11 @@ def twin_run(
     """Return the steady state of the twin over one period of the plates as histories, (n,) each.
 
     Args:
-        model, plates, period, channels: see `period_twin`.
+        model, plates, period, channels: see `twin_lines`.
         damping: damping constants c [N s/m]; (d,).
         samples: number of samples n of the result.
     """
-    twin = period_twin(model, plates, period, channels, samples)
-    lines = twin_lines(twin, model.matrices.damper_names, damping, channels)
+    lines = twin_lines(model, [damping], plates, period, channels, samples)[1][0]
     whole = np.zeros((len(channels), samples // 2 + 1), dtype=np.complex128)
     # A line at k/T and its mirror image.
     whole[:, 1 : lines.shape[1] + 1] = lines * (samples / np.sqrt(2.0))

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import mujoco
 
 from vehicle.arrays import Vector
+from vehicle.engines.simulation.moved_car import MovedCar
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.standing import require_body_modes, require_standing
 from vehicle.engines.simulation.static_trim import StaticTrim, trim
+from vehicle.engines.simulation.steady_trim import steady_trim
 from vehicle.errors import SimulationError
 from vehicle.model.assembly.spec import assemble
 from vehicle.model.flexbody.superelement import Superelement
@@ -26,6 +28,7 @@ class CarModel:
         origins: origin of each body frame in the design position [m], by body name.
         model: compiled model with the unstrained positions of its joint springs.
         static: preloads and static loads.
+        moved: position of a car in steady acceleration, from which `spec` and `model` start; None at rest.
     """
 
     vehicle: Vehicle
@@ -34,6 +37,7 @@ class CarModel:
     origins: Mapping[str, Vector]
     model: mujoco.MjModel
     static: StaticTrim
+    moved: MovedCar | None = None
 
     def __repr__(self) -> str:
         """One line."""
@@ -59,6 +63,9 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
     rows = Rows(model)
     static = trim(rows)
     require_standing(vehicle, rows, static)
+    moved = None
+    if vehicle.driving.accelerates:
+        model, static, moved = steady_trim(vehicle, assembly.spec, rows.anew(static.preload), static)
     return CarModel(
         vehicle=vehicle,
         superelement=assembly.superelement,
@@ -66,4 +73,5 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
         origins=assembly.origins,
         model=model,
         static=static,
+        moved=moved,
     )

@@ -257,7 +257,8 @@ class Rolling(NamedTuple):
         speeds, trails, inertias: V [m/s], trail [m], inertia of the rotating parts about the axle [kg m2]; (w,).
         dofs: rows of wheel, velocity coordinate that moves its hub, and its tree.
         course: velocity coordinates of the body along x, y and in yaw, positions along x and y; (5,) or empty.
-        rest: positions along x and y at rest; (2,).
+        rest: positions along x and y at rest, then the heading of each wheel, then the horizontal forces X and Y of
+            each tyre in steady acceleration; (2 + 3 w,).
         hold: stiffness and damping of the course control along x, y and in yaw, and distance of the lateral force
             behind the body; (7,).
     """

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.mapped_table import release
@@ -94,6 +96,12 @@ class Recording:
             raise ConfigurationError(f"no channel {channel!r}; the recording has {', '.join(self.channels)}") from None
         release(values)
         return values
+
+    def stacked(self, channels: Sequence[str]) -> Vector:
+        """Return a copy of channels in memory; (channels, n)."""
+        rows = np.stack([self[name] for name in channels])
+        release(self.channels[channels[0]])
+        return rows
 
     def only(self, channels: Sequence[str]) -> Recording:
         """Return the recording with a subset of its channels."""

@@ -136,7 +136,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         tables=Tables(**of["tables"]),
         modes=_modes(model, [name for name in balls if f"shape/{name}" in numbers], ends, rows_of, modal),
         space=ModalSpace(none, none, none, none, spread=np.zeros((0, 0))),
-        rolling=Rolling(**_rolling(model, rolling_tyres, plates), **of["rolling"]),
+        rolling=Rolling(**_rolling(model, rolling, rolling_tyres, plates), **of["rolling"]),
         round=RoundTyres(**_round_tyres(model, round_tyres), **of["round"]),
         fluids=Fluids(
             elements=whole_numbers([names.index(row) for row, _ in moved]),
@@ -278,11 +278,15 @@ def _above(model: mujoco.MjModel, number: Any) -> list[int]:
 
 
 def _rolling(
-    model: mujoco.MjModel, wheels: Sequence[tuple[int, tuple[int, int], int]], plates: dict[int, Any]
+    model: mujoco.MjModel,
+    names: Sequence[str],
+    wheels: Sequence[tuple[int, tuple[int, int], int]],
+    plates: dict[int, Any],
 ) -> dict[str, Any]:
     """Return the fields of the record of the rolling tyres that do not follow from their laws.
 
-    `wheels` has index among the bushings, sites and spin coordinate of each tyre, `plates` the index of each plate.
+    `names` has the tyres, `wheels` index among the bushings, sites and spin coordinate of each tyre,
+    `plates` the index of each plate.
     """
     order = sorted(int(position) for position in plates.values() if position >= 0)
     hubs = [int(model.site_bodyid[sites[0]]) for _, sites, _ in wheels]
@@ -301,7 +305,14 @@ def _rolling(
         first, position = int(joint.dofadr[0]), int(joint.qposadr[0])
         # Velocities along x, y and in yaw, positions along x and y of the free joint of the body.
         course = np.array([first, first + 1, first + 5, position, position + 1])
-        start = model.qpos0[position : position + 2].copy()
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        # Positions along x and y of the body, and the heading of each axle, which is y of its hub.
+        axles = data.xmat[hubs].reshape(-1, 3, 3)[:, :, 1]
+        headings = np.arctan2(-axles[:, 0], axles[:, 1])
+        steady = [numeric(model, f"steady/{name}") for name in names]
+        forces = [np.zeros(2) if force is None else force for force in steady]
+        start = np.concatenate([model.qpos0[position : position + 2], headings, *forces])
     dofs = [(n, dof, int(model.body_rootid[hub])) for n, hub in enumerate(hubs) for dof in _above(model, hub)]
     return {
         "tyres": whole_numbers([index for index, _, _ in wheels]),

@@ -173,6 +173,17 @@ class Rows:
         elastic = space.stiffness * (space.rest - q) - space.damping * v
         return np.asarray(q + h * (v + h * (elastic / space.mass + space.spread @ pull)))
 
+    def element_jacobian(self, data: mujoco.MjData) -> Vector:
+        """Return the Jacobian of all rows, of an element along the axes of its law; (rows, nv)."""
+        jacobian, b = data.efc_J.reshape(self.layout.row_count, self.model.nv).copy(), self.layout.bushings
+        oblique = set(b.oblique.tolist())
+        for index, carrier in enumerate(b.carriers):
+            frame = data.xmat[carrier].reshape(3, 3)
+            # In the design position carriers are parallel to the vehicle frame; oblique rows are along their laws.
+            if index not in oblique and not np.array_equal(frame, np.eye(3)):
+                jacobian[b.rows[index]] = frame.T @ jacobian[b.rows[index]]
+        return np.asarray(jacobian)
+
     def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """Return sin(angle) n of each moving part relative to its carrier, world axes, (m, 3), and carrier frames."""
         elements, modes = self.layout.rotations, self.layout.modes

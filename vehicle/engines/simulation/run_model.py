@@ -46,6 +46,8 @@ def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
     )
     nodes = attached_nodes(car.superelement, car.vehicle.composition.attachments())
     fewer = assemble_on(car.vehicle, car.superelement.combined(spread, dict.fromkeys(nodes.values())))
+    if car.moved is not None:
+        car.moved.place(fewer.spec)
     before, after = np.split(car.model.qpos_spring, [modes.positions.start, modes.positions.stop])[::2]
     return prepared(fewer.spec, np.concatenate([before, np.zeros(count), after])), space
 

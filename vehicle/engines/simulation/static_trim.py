@@ -8,7 +8,7 @@ while the car settles, so that they carry no horizontal force; wheels do not rot
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
@@ -45,12 +45,14 @@ class StaticTrim:
         tyre_load: vertical load of each tyre [N], by wheel.
         support_load: vertical load of each other ground contact with a vertical stiffness [N], by name.
         residual: maximum displacement due to the remaining forces [m].
+        tyre_grip: horizontal force of each tyre in steady acceleration [N], by wheel; empty without.
     """
 
     preload: Vector
     tyre_load: dict[str, float]
     support_load: dict[str, float]
     residual: float
+    tyre_grip: dict[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """One line."""
@@ -188,10 +190,7 @@ def _row_stiffness(rows: Rows) -> Vector:
     """Return the stiffness of all rows [N/m], diagonal except for oblique ground contacts."""
     e, b = rows.layout, rows.layout.bushings
     ground = ground_contacts(rows)
-    diagonal = np.zeros(e.row_count)
-    # Rubber relaxes under a static load: its friction carries none.
-    elastic = b.stiffness.copy()
-    np.subtract.at(elastic, (e.rubber.elements, e.rubber.axes), e.rubber.stiffness)
+    diagonal, elastic = np.zeros(e.row_count), elastic_stiffness(e)
     diagonal[b.rows] = elastic
     rolling = e.rolling.tyres
     # Along the road a rolling tyre has no stiffness but that of its carcass, the spring of its branch.
@@ -207,6 +206,13 @@ def _row_stiffness(rows: Rows) -> Vector:
             level = slide @ (way.T * elastic[index]) @ way @ slide
             whole[np.ix_(element_rows, element_rows)] = back.T @ level @ back
     return whole
+
+
+def elastic_stiffness(layout: Layout) -> Vector:
+    """Return the stiffness of the bushings under a static load, for which rubber relaxes its friction; (n, 3)."""
+    elastic = layout.bushings.stiffness.copy()
+    np.subtract.at(elastic, (layout.rubber.elements, layout.rubber.axes), layout.rubber.stiffness)
+    return elastic
 
 
 def unsolved(layout: Layout, weight: Vector) -> Vector:

@@ -251,6 +251,12 @@ class ElementBuilder:
         """Write the constants of the hold of the course of a rolling car, which acts on the trimmed body."""
         self._numerics(hold_numbers(self.vehicle))
 
+    def add_steady_forces(self) -> None:
+        """Write horizontal forces of rolling tyres, zero until the trim, for a car that brakes, drives or turns."""
+        if self.vehicle.driving.accelerates:
+            rolling = (link for link in self.vehicle.composition.connections if link.rolling is not None)
+            self._numerics({f"steady/{connection_name(link)}": np.zeros(2) for link in rolling})
+
     def add_force(self, force: PlacedForce) -> None:
         """Add the site of an applied force on each of its parts, and its directions; the callback of a run applies it.
 

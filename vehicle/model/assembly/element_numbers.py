@@ -22,7 +22,7 @@ from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
 from vehicle.model.parameters.force_elements import Damper, Tyre
 from vehicle.model.parameters.force_table import ForceTable
-from vehicle.model.parameters.placed_force import PlacedForce
+from vehicle.model.parameters.placed_force import DRIVING, PlacedForce
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 
@@ -221,4 +221,6 @@ def force_fields(force: PlacedForce) -> Numbers:
     """Return the custom field of a force in its model: directions of force and moment, 1 in part axes, and the mean."""
     if force.joint:
         return {f"{TORQUE}{force.name}/{force.joint}": np.array([0.0, force.mean])}
-    return {f"{FORCE}{force.name}": np.array([*force.force, *force.moment, float(force.follows), force.mean])}
+    # A drive torque does not act on the car at rest: its trim in steady acceleration sets the direction.
+    moment = (0.0, 0.0, 0.0) if force.path == DRIVING else force.moment
+    return {f"{FORCE}{force.name}": np.array([*force.force, *moment, float(force.follows), force.mean])}

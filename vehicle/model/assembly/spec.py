@@ -71,6 +71,7 @@ def assemble_on(vehicle: Vehicle, superelement: Superelement) -> Assembly:
     for damper in car.dampers:
         builder.add_damper(damper)
     builder.add_hold()
+    builder.add_steady_forces()
     for force in on_parts(car.forces):
         builder.add_force(force)
     for output in car.outputs:

@@ -22,6 +22,9 @@ ROUND = 1e-6
 class Driving(Validated):
     """Constant speed straight ahead with freely rolling wheels; at speed 0 the tyres are at rest, as on a rig.
 
+    A steady acceleration moves the static equilibrium about which the car rides, and neither its speed nor its course:
+    `docs/theory/steady-acceleration.md`.
+
     The hold of the course represents the driver: free rolling leaves the position of the car along x and y and its
     heading without any stiffness. Comfort does not depend on it: `docs/theory/rolling-tyre.md`.
     """
@@ -46,6 +49,46 @@ class Driving(Validated):
     hold_damping: float = quantity(
         "-", "damping ratio of the car on the soft springs that keep its course", at_least=0.1, at_most=2.0, default=0.7
     )
+    acceleration: float = quantity(
+        "m/s2",
+        "steady acceleration along the road, forwards positive (ISO 8855), braking negative",
+        at_least=-15.0,
+        at_most=15.0,
+        why="1.5 g, the grip of racing tyres",
+        default=0.0,
+    )
+    lateral: float = quantity(
+        "m/s2",
+        "steady lateral acceleration, to the left positive (ISO 8855), as in a bend to the left",
+        at_least=-15.0,
+        at_most=15.0,
+        why="1.5 g, the grip of racing tyres",
+        default=0.0,
+    )
+    brake_balance: float = quantity(
+        "-",
+        "share of the foremost axle in the brake force; the wheels of an axle brake alike",
+        at_least=0.0,
+        at_most=1.0,
+        default=0.7,
+    )
+    driven_axle: str | None = quantity(
+        "-", "axle that drives, or all for equal shares of all axles; default: the foremost axle", default=None
+    )
+    drive_reaction: str | None = quantity(
+        "-",
+        "part with the reaction of the drive torque, which has the differential; wheel for motors in the wheels; "
+        "default: engine, or wheel in a car without one and for an axle of one piece, which has its differential",
+        default=None,
+    )
+    friction: float = quantity(
+        "-",
+        "largest ratio of horizontal force to load of a tyre in steady acceleration",
+        at_least=0.05,
+        at_most=2.0,
+        why="0.1 on ice, 1 on a dry road",
+        default=1.0,
+    )
 
     @property
     def rolling(self) -> bool:
@@ -53,9 +96,15 @@ class Driving(Validated):
         return self.speed > 0.0
 
     @property
+    def accelerates(self) -> bool:
+        """True if the car brakes, drives or turns steadily."""
+        return self.acceleration != 0.0 or self.lateral != 0.0
+
+    @property
     def words(self) -> str:
-        """State of the tyres for summaries and captions, for example "rolling at 80 km/h"."""
-        return tyre_words([self])
+        """State of tyres and car for summaries and captions, for example "rolling at 80 km/h, acceleration -3 m/s2"."""
+        steady = {"acceleration": self.acceleration, "lateral acceleration": self.lateral}
+        return ", ".join([tyre_words([self]), *(f"{name} {value:g} m/s2" for name, value in steady.items() if value)])
 
 
 STANDING = Driving()
@@ -231,3 +280,25 @@ def as_driven(template: Template, driving: Driving) -> Template:
         for connection in template.connection
     )
     return replace(template, joint=tuple(joints), connection=connections)
+
+
+def driven_wheels(driving: Driving, wheels: Iterable[Any]) -> dict[str, float]:
+    """Return the share of each wheel in the force along the road, by name; the wheels of an axle have equal shares.
+
+    Args:
+        driving: driving state.
+        wheels: wheels of a car on two axles, see `vehicle.model.parameters.composition.PlacedWheel`.
+
+    Raises:
+        ConfigurationError: the driven axle is unknown.
+    """
+    axles = {wheel.name: wheel.axle for wheel in sorted(wheels, key=lambda wheel: float(wheel.center[0]))}
+    names = list(dict.fromkeys(axles.values()))
+    if driving.acceleration <= 0.0:
+        shares = dict(zip(names, (driving.brake_balance, 1.0 - driving.brake_balance), strict=False))
+    else:
+        driven = driving.driven_axle or names[0]
+        if driven not in (*names, "all"):
+            raise ConfigurationError(f"driving.driven_axle: found {driven!r}, must be one of {', '.join(names)}, all")
+        shares = {name: 1.0 / len(names) if driven == "all" else float(name == driven) for name in names}
+    return {wheel: shares[axle] / list(axles.values()).count(axle) for wheel, axle in axles.items()}

@@ -13,6 +13,9 @@ from vehicle.wording import did_you_mean
 NONE = (0.0, 0.0, 0.0)
 """Direction of a force or moment that is absent."""
 
+DRIVING = "driving"
+"""Path of the drive torques of a car in steady acceleration."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedForce:
@@ -66,8 +69,8 @@ class PlacedForce:
 
     @property
     def channel(self) -> str:
-        """Channel of its history, recorded on request; empty if it changes a tyre."""
-        return "" if self.tyre else f"{'torque' if self.unit == 'N m' else 'force'}_{self.name}"
+        """Channel of its history, recorded on request; empty if it changes a tyre or is the steady drive torque."""
+        return "" if self.tyre or self.path == DRIVING else f"{'torque' if self.unit == 'N m' else 'force'}_{self.name}"
 
     @property
     def acts(self) -> bool:

@@ -12,6 +12,7 @@ from vehicle.model.parameters.body import TrimmedBody, require_inertia_table
 from vehicle.model.parameters.compose import APPLY_FORCES, compose
 from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.curves import with_curve_files
+from vehicle.model.parameters.drive_torque import with_drive_torques
 from vehicle.model.parameters.driving import Driving, driving_of
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.further_forces import new_tables
@@ -275,13 +276,14 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
     body = build(TrimmedBody, table["body"], "body")
     solver = build(Solver, convert(dict, table["solver"], "solver"), "solver")
     folders = () if folder is None else (folder, folder / "templates")
+    driving = driving_of(table)
     vehicle = Vehicle(
         table=table,
         **{name: getattr(head, name) for name in HEAD if name != APPLY_FORCES},
         body=body,
         solver=solver,
-        driving=driving_of(table),
-        composition=compose(table, folders),
+        driving=driving,
+        composition=with_drive_torques(compose(table, folders), driving, body),
     )
     if "shaker_wheel" in table:
         vehicle.require_wheels((head.shaker_wheel,))

@@ -50,6 +50,9 @@ class VehicleVariants:
 
     def _local_variant(self, overrides: Sequence[str]) -> Vehicle | None:
         """Return the vehicle with other values; None if more than single numbers of elements change."""
+        if self.vehicle.driving.accelerates:
+            # Masses change its drive torques.
+            return None
         table, changed = dict(self.vehicle.table), dict[str, None]()
         copies: set[int] = {id(table)}
         ranges = StaleRanges()

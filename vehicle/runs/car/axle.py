@@ -15,8 +15,11 @@ def axle_names(car: Any) -> list[str]:
 
 
 def car_at_rest(car: Any) -> Any:
-    """Return the car with standing tyres: on its rig an axle does not drive, and its wheels are fixed to the hubs."""
-    return car.with_(["driving.speed=0"]) if car.vehicle.driving.rolling else car
+    """Return the car with standing tyres and without acceleration: on its rig an axle neither drives nor brakes."""
+    driving = car.vehicle.driving
+    changes = ["driving.speed=0"] if driving.rolling else []
+    changes += [f"driving.{name}=0" for name in ("acceleration", "lateral") if getattr(driving, name)]
+    return car.with_(changes) if changes else car
 
 
 def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:

@@ -46,6 +46,7 @@ from vehicle.runs.car.road_estimate import RoadEstimate, road_estimate
 from vehicle.runs.car.road_precision import with_duration
 from vehicle.runs.car.run import Run
 from vehicle.runs.car.simulated_run import simulated_run
+from vehicle.runs.car.steady_car import SteadyCar
 from vehicle.runs.car.stepped_car import stepped_car
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
@@ -59,7 +60,7 @@ if TYPE_CHECKING:
     from vehicle.runs.car.car_data import CarData
 
 
-class Car:
+class Car(SteadyCar):
     """Car on a shaker or a road: its parameters, model, matrices, modes and runs.
 
     Args:
@@ -88,8 +89,7 @@ class Car:
                 or value raises a `ConfigurationError`.
         """
         file = None if path is None else mention(vehicle_file(Path(path)))
-        changes = assignments(overrides)
-        table, vehicle = load_file(file, changes)
+        table, vehicle = load_file(file, changes := assignments(overrides))
         car = cls(vehicle, folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides, car._table = tuple(changes), table

@@ -18,6 +18,7 @@ from vehicle.names import point_words
 from vehicle.runs.car.axle import axle_names, car_at_rest, mass_and_cog
 from vehicle.runs.car.axle_data import AxleData, axle_data
 from vehicle.runs.car.motion_figures import MotionFigure, damper_notes, motion_figures
+from vehicle.runs.car.steady_data import SteadyData, steady_data
 from vehicle.runs.car.usual_figures import UsualFigure, usual_figures
 from vehicle.threads import one_blas_thread
 from vehicle.wording import in_words
@@ -46,6 +47,7 @@ class CarData:
         figures: headline figures: heave, pitch, roll, wheel hop; see `MotionFigure`.
         notes: quantities that are not defined for this car, and why.
         parameters: all parameters.
+        steady: position and loads in steady acceleration; None without.
     """
 
     name: str
@@ -67,6 +69,7 @@ class CarData:
     figures: tuple[MotionFigure, ...]
     notes: tuple[str, ...]
     parameters: tuple[Parameter, ...]
+    steady: SteadyData | None = None
 
     def __repr__(self) -> str:
         """One line."""
@@ -87,6 +90,8 @@ class CarData:
             percent = self.support_percent(axle) or (None, None)
             entry |= {"brake_support_percent": percent[0], "drive_support_percent": percent[1]}
         usual = [{**dataclasses.asdict(figure), "unusual": figure.unusual} for figure in self.usual]
+        if self.steady is None:
+            del plain["steady"]
         return {
             **plain,
             "front_share": _plain(self.front_share),
@@ -145,8 +150,8 @@ def car_data(car: Any) -> CarData:
     """Compute the data of a car.
 
     Args:
-        car: the car; on rolling tyres the modes listed with the figures are those at its speed, all other data those
-            at rest.
+        car: the car; on rolling tyres the modes listed with the figures are those at its speed, and `steady` is that
+            in its steady acceleration, all other data are those at rest.
 
     Raises:
         ConfigurationError: the car cannot be built.
@@ -180,6 +185,7 @@ def car_data(car: Any) -> CarData:
         figures=motion_figures(car),
         notes=tuple(_notes(still, axles)),
         parameters=car_parameters(car),
+        steady=steady_data(car, still, axles, z - ground),
     )
 
 

@@ -8,6 +8,7 @@ from vehicle.model.parameters.parameter_list import Parameter, value_text
 from vehicle.names import point_words
 from vehicle.runs.car.car_data import CarData
 from vehicle.runs.car.motion_figures import MINIMUM_SHARE, MotionFigure
+from vehicle.runs.car.steady_data import SteadyData
 from vehicle.runs.car.usual_figures import axle_figures, car_figures, motion_values, usual_figures, usual_range
 
 SOURCE_WIDTH = 60
@@ -58,7 +59,8 @@ def car_tables(data: CarData) -> list[TextTable]:
     """Return the tables of a car: the whole car, its figures with their usual ranges, its axles, its headline
     figures.
     """
-    return [_whole_car(data), _usual(data), _axles(data), figures_table(data.figures)]
+    tables = [_whole_car(data), _usual(data), _axles(data), figures_table(data.figures)]
+    return tables if data.steady is None else [*tables, _steady(data.steady)]
 
 
 def car_text(data: CarData) -> str:
@@ -123,6 +125,41 @@ def _axles(data: CarData) -> TextTable:
     heads = ("axle (values of a single wheel: right)", *(axle.name for axle in data.axles), "usual")
     notes = (SUPPORT_NOTE,) if data.wheelbase_m is not None else ()
     return TextTable(title="Axles", heads=heads, rows=tuple(rows), notes=notes)
+
+
+def _steady(steady: SteadyData) -> TextTable:
+    rows = tuple(
+        (
+            wheel.name,
+            number(wheel.load_n),
+            number(wheel.load_change_n),
+            number(1e3 * wheel.travel_m, 1),
+            number(wheel.along_n),
+            number(wheel.across_n),
+            number(wheel.friction, 2),
+        )
+        for wheel in steady.wheels
+    )
+    supports = [
+        f"support by the linkage of {axle.name}: {number(axle.percent, 1)} % of the load transfer, "
+        f"{number(1e3 * axle.travel_m, 1)} mm of travel"
+        for axle in steady.supports
+    ]
+    heads = ("wheel", "load [N]", "change [N]", "travel [mm]", "along [N]", "across [N]", "friction [-]")
+    pitch, roll = (number(angle, 2) for angle in (steady.pitch_deg, steady.roll_deg))
+    notes = (
+        f"in steady acceleration: {steady.acceleration:g} m/s2 forwards, {steady.lateral:g} m/s2 to the left; pitch "
+        f"{pitch} deg (nose down +), roll {roll} deg (right side down +)",
+        *supports,
+        *([STEADY_NOTE] if supports else []),
+    )
+    return TextTable(title="Steady acceleration", heads=heads, rows=rows, notes=notes)
+
+
+STEADY_NOTE = (
+    "support: anti-dive in front and anti-lift in the rear while braking, anti-lift in front and anti-squat in the "
+    "rear while driving; travel: compression +"
+)
 
 
 def figures_table(figures: Sequence[MotionFigure]) -> TextTable:

@@ -66,7 +66,7 @@ def class_values(
 
     Returns:
         Name to value; empty on a road that repeats, off a class, below `SHORTEST_SPAN_S`, with cams, for a car without
-        a twin, and where the twin explains less than half of the scatter.
+        dampers or one that forces shake too, and where the twin explains less than half of the scatter.
     """
     needed, rail = damper_channels(car.vehicle), [f"seat_rail_acc_{axis}" for axis in AXES]
     step, samples = recording.timestep, recording.time.size
@@ -74,6 +74,7 @@ def class_values(
     applies = road.get("class") and "repeats_after_s" not in road and "tyre_contact" not in road and needed
     if (
         not applies
+        or car.poles.forced
         or not {*needed, *rail} <= {*recording.channels}
         or (span.stop - span.start) * step < SHORTEST_SPAN_S
     ):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -74,7 +74,7 @@ def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
             raise ConfigurationError(
                 f"estimate: {each.name} has rubber friction, whose force depends on its history; {REMEDY}"
             )
-    if model.applied.shape[1] or model.matrices.run_out:
+    if model.forced:
         raise ConfigurationError(
             "estimate: forces of the vehicle file shake the car too; leave them out with "
             f"--set apply_forces=false, or {REMEDY}"
@@ -131,4 +131,24 @@ def require_motion(
             action = "leaves the road" if law.one_sided else "leaves its straight segment at rest"
             raise ConfigurationError(
                 f"estimate: {law.name} {action} for {percent} % of the time, at most {limit} % are covered; {REMEDY}"
+            )
+
+
+def require_contact(static_load: Mapping[str, float], tyre_load: Mapping[str, float]) -> None:
+    """Check that the tyres rarely leave the road; a linear tyre would pull, of which a run warns.
+
+    Args:
+        static_load: static load of each tyre [N].
+        tyre_load: RMS of its dynamic load [N].
+
+    Raises:
+        ConfigurationError: the first that does not.
+    """
+    for wheel, load in static_load.items():
+        share = float(scipy.special.ndtr(-load / tyre_load[wheel])) if tyre_load[wheel] > 0.0 else 0.0
+        if share > MOST_LIFTED:
+            percent, limit = beside_limit(100.0 * share, 100.0 * MOST_LIFTED)
+            raise ConfigurationError(
+                f"estimate: tyre {wheel} leaves the road for {percent} % of the time, at most {limit} % are covered; "
+                f"{REMEDY}"
             )

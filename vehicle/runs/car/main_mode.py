@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -11,7 +12,9 @@ from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.mode_shares import ModeShares, mode_shares
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import ConfigurationError
+from vehicle.mapped_table import release
 from vehicle.runs.car.run import FRF_BAND, Run
+from vehicle.signals.analysis.record_lines import RecordLines
 
 CHANNEL = "seat_rail_acc_z"
 """Acceleration whose modes are compared."""
@@ -52,12 +55,26 @@ def plate_lines(
     names = [f"plate_{wheel}_displacement" for wheel in wheels]
     if not all(name in recording.channels for name in names):
         return None
-    plates = [recording.channels[name][evaluated] for name in names]
-    frequency = np.fft.rfftfreq(plates[0].size, recording.timestep)
+    frequency = np.fft.rfftfreq(recording.time[evaluated].size, recording.timestep)
     inside = np.flatnonzero((frequency >= band[0]) & (frequency <= band[1]))
-    inside = inside[:: max(inside.size // limit, 1)] if limit else inside
-    spectra = np.array([np.fft.rfft(np.hanning(plate.size) * (plate - plate.mean()))[inside] for plate in plates])
-    return Lines(np.asarray(frequency[inside], dtype=float), spectra)
+    first, step = int(inside[0]) if inside.size else 0, max(inside.size // limit, 1) if limit else 1
+    spectra = _windowed_lines([recording[name][evaluated] for name in names], first, first + inside.size)
+    return Lines(np.asarray(frequency[inside[::step]], dtype=float), spectra[:, ::step])
+
+
+def _windowed(row: Vector, mean: float, window: Vector, part: slice) -> Vector:
+    """Return a part of a record without its mean under a window."""
+    return window[part] * (row[part] - mean)
+
+
+def _windowed_lines(rows: Sequence[Vector], first: int, last: int) -> Complex:
+    """Return the lines from first to last, excluded, of records without their mean under a Hann window."""
+    transform, window = RecordLines(rows[0].size, first, last), np.hanning(rows[0].size)
+    lines = np.empty((len(rows), last - first), dtype=np.complex128)
+    for row, of_row in zip(rows, lines, strict=True):
+        of_row[:] = transform.of(partial(_windowed, row, float(row.mean()), window))
+        release(row)
+    return lines
 
 
 def mode_of(modes: Sequence[Mode], shares: ModeShares, at: int) -> Mode | None:
@@ -80,9 +97,8 @@ def as_measured(run: Run, lines: Lines, *, stuck: bool) -> ModeShares:
     """
     system, values = run.car.matrices.system, run[CHANNEL][run.evaluated]
     linear = np.abs(mode_shares(system, CHANNEL, lines.frequency, lines.plates, stuck=stuck).acceleration)
-    spectrum = np.fft.rfft(np.hanning(values.size) * (values - values.mean()))
     first = round(float(lines.frequency[0]) * values.size * run.recording.timestep)
-    recorded = np.abs(spectrum[first : first + lines.frequency.size])
+    recorded = np.abs(_windowed_lines([values], first, first + lines.frequency.size)[0])
     scale = np.divide(recorded, linear, out=np.zeros_like(linear), where=linear > 0.0)
     return mode_shares(system, CHANNEL, lines.frequency, scale * lines.plates, stuck=stuck)
 

@@ -31,7 +31,7 @@ from vehicle.engines.reduced.road_expectation import (
 from vehicle.engines.reduced.statistical_linearisation import LineSegments, line_segments, linearised_damping
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import AXES
-from vehicle.runs.car.estimate_limits import LOCKED, require_class, require_laws, require_motion
+from vehicle.runs.car.estimate_limits import LOCKED, require_class, require_contact, require_laws, require_motion
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.ride_comfort import (
@@ -187,7 +187,7 @@ def road_estimate(car: Any, drive: RoadDrive | RecordedDrive, channels: Iterable
     displacements = np.sqrt(densities[len(names) :] @ part.lines.width)
     locked = np.full(len(dampers), LOCKED)
     require_motion(dampers, locked * damper_speeds(part.twin, locked, part.lines), model.laws, displacements)
-    return RoadEstimate(
+    estimate = RoadEstimate(
         car=vehicle.name,
         road=road.name,
         lines=part.lines,
@@ -195,6 +195,8 @@ def road_estimate(car: Any, drive: RoadDrive | RecordedDrive, channels: Iterable
         static_load={wheel: reference.static.tyre_load[wheel] for wheel in model.matrices.system.inputs},
         damping=dict(zip((damper.name for damper in dampers), damping.tolist(), strict=True)),
     )
+    require_contact(estimate.static_load, estimate.tyre_load)
+    return estimate
 
 
 def _split(car: Any) -> tuple[_Itself, tuple[str, ...]]:

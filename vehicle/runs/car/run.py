@@ -198,7 +198,7 @@ class Run:
         band, contact = self.signal.band(COMFORT_BAND), "steering_wheel" if point == RIM else "seat"
         return run_comfort(
             self.recording.timestep,
-            *(np.stack([self.recording[f"{name}_acc_{axis}"] for axis in AXES]) for name in points),
+            *(self.recording.stacked([f"{name}_acc_{axis}" for axis in AXES]) for name in points),
             skip=self.skip,
             band=band,
             point=point.replace("_", " "),
@@ -240,7 +240,7 @@ class Run:
         angle, speed = self.car.vehicle.composition.turning(angle)
         if angle == CRANK and self.car.vehicle.composition.crank_run_up is not None:
             raise ConfigurationError(f"orders: the speed of {angle} changes in this run; use order_cut")
-        histories = np.array([self.recording[name] for name in names])
+        histories = self.recording.stacked(names)
         lines = order_lines(self.time, histories, speed / (2.0 * np.pi), orders, begin=self.skip)
         return named_orders(lines, names, tuple(self.recording.units[name] for name in names), angle)
 

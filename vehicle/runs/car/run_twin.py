@@ -3,8 +3,7 @@
 The twin (`vehicle.engines.reduced.twin_run`) drives over the same road. The random phases of the road act on both
 alike, so the difference between run and twin gives the error of a value of the run
 (`vehicle.signals.analysis.comfort_error`). Other roads have no twin, nor cams, which follow the upper envelope of the
-road. A car with controlled dampers, or with stops in its dampers, has no twin: their forces depend on more than the
-damper velocity.
+road. A twin of controlled dampers, or of stops, has their energy too; the share that it explains tells how alike it is.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,9 +12,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from vehicle.arrays import Complex, Vector
-from vehicle.engines.reduced.linear_twin import LinearTwin
 from vehicle.engines.reduced.pole_model import PoleModel
-from vehicle.engines.reduced.twin_run import damping_of_run, period_twin, twin_lines
+from vehicle.engines.reduced.twin_run import damping_of_run, twin_lines
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.model.parameters.vehicle import Vehicle
@@ -99,10 +97,8 @@ def repeats_after(road: Mapping[str, object] | None) -> float | None:
 
 
 def damper_channels(vehicle: Vehicle) -> tuple[str, ...]:
-    """Return the channels that a run must record for its twin; empty for a car without a twin."""
+    """Return the channels that a run must record for its twin; empty for a car without dampers, which has none."""
     dampers = vehicle.composition.dampers
-    if any(damper.law.controlled or damper.law.function or damper.law.stop for damper in dampers):
-        return ()
     return tuple(f"{damper.name}_{quantity}" for damper in dampers for quantity in ("velocity", "force"))
 
 
@@ -125,8 +121,7 @@ def twin_lines_of(
     first, samples = round(period.begin / timestep), round(period.length / timestep)
     loads = {f"tyre_{wheel}_force_z" for wheel in cars[0].static.tyre_load}
     chosen = [name for name in names if name in next(filter(None, needed), ()) or name in loads or "_acc_" in name]
-    twins: dict[int, LinearTwin] = {}
-    by_car: dict[int, Complex] = {}
+    by_poles: dict[PoleModel, dict[int, Vector]] = {}
     for number, (car, recorded) in enumerate(zip(cars, needed, strict=True)):
         if not recorded or not {*recorded} <= {*channels}:
             continue
@@ -134,15 +129,14 @@ def twin_lines_of(
         laws = [damper.law for damper in car.vehicle.composition.dampers]
         damping = damping_of_run(model, laws, record, slice(first, first + samples))
         # Cars that differ in friction share their poles.
-        if id(model) not in twins:
-            twins[id(model)] = period_twin(model, period.plates, period.length, chosen, samples)
-        by_car[number] = twin_lines(twins[id(model)], model.matrices.damper_names, damping, chosen)
-    if not by_car:
-        return None
-    at_rest = np.zeros_like(next(iter(by_car.values())))
-    lines = np.stack([by_car.get(number, at_rest) for number in range(len(cars))], axis=1)
-    frequency = next(iter(twins.values())).frequency
-    return TwinLines(frequency, dict(zip(chosen, lines, strict=True)))
+        by_poles.setdefault(model, {})[number] = damping
+    lines: Complex = np.empty(0)
+    for model, dampings in by_poles.items():
+        frequency, found = twin_lines(model, [*dampings.values()], period.plates, period.length, chosen, samples)
+        if not lines.size:
+            lines = np.zeros((len(chosen), len(cars), frequency.size), dtype=np.complex128)
+        lines[:, [*dampings]] = np.moveaxis(found, 0, 1)
+    return TwinLines(frequency, dict(zip(chosen, lines, strict=True))) if by_poles else None
 
 
 def twin_comfort(

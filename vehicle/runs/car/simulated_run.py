@@ -12,6 +12,7 @@ from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress, simulate
 from vehicle.errors import ConfigurationError
 from vehicle.names import ENGINES
+from vehicle.runs.car.grip_notice import grip_notice
 from vehicle.runs.car.run_up_notice import run_up_notice
 from vehicle.signals.excitation.signal import Signal
 
@@ -101,7 +102,9 @@ def simulated_run(
 def _with_forces(recording: Recording, car: Any, names: Sequence[str], shown: Mapping[str, str]) -> Recording:
     """Return a recording with the notices on the forces of its car and their histories, in the order of `names`."""
     composition = car.vehicle.composition
-    recording = with_notices(recording, [*force_notices(composition.forces), *run_up_notice(car)])
+    recording = with_notices(
+        recording, [*force_notices(composition.forces), *run_up_notice(car), *grip_notice(car, recording.channels)]
+    )
     if not shown:
         return recording
     channels = {**recording.channels, **force_histories(composition, shown, recording.time)}

@@ -40,10 +40,10 @@ def _comfort(point: str, name: str) -> Reduction:
             return Values(columns[column])
         return Values(columns[column], columns[column] * columns[f"{column}{ERROR}"], waves_of(columns, column))
 
-    def lines(_: Complex, details: Details, runs: Runs, twin: TwinLines) -> tuple[Vector, Complex]:
+    def lines(_: Complex, details: Details, runs: Runs, twin: TwinLines) -> Complex:
         columns = _of_twin(point, name, runs, twin)
         column = f"{name}_{details.axis}" if details.axis else name
-        return columns[column], waves_of(columns, column)
+        return waves_of(columns, column)
 
     return Reduction(of=of, lines=lines, page="comfort" if (point, name) == ("seat_rail", WEIGHTED) else "")
 
@@ -74,11 +74,11 @@ def _ratio_waves(*points: dict[str, Vector]) -> Complex:
     return np.asarray(above - below)
 
 
-def _seat_lines(_: Complex, __: Details, runs: Runs, twin: TwinLines) -> tuple[Vector, Complex]:
+def _seat_lines(_: Complex, __: Details, runs: Runs, twin: TwinLines) -> Complex:
     cushion, rail = (_of_twin(point, WEIGHTED, runs, twin) for point in ("seat", "seat_rail"))
     with np.errstate(divide="ignore", invalid="ignore"):
         value = cushion[f"{WEIGHTED}_z"] / rail[f"{WEIGHTED}_z"]
-    return value, value[:, None] * _ratio_waves(cushion, rail)
+    return value[:, None] * _ratio_waves(cushion, rail)
 
 
 def _figure(prefix: str, name: str, meaning: str) -> Figure:

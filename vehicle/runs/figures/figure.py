@@ -92,13 +92,12 @@ class Reduction:
     Attributes:
         of: values for histories, details and runs.
         page: name of the reduction in the page with sliders (`trial_worker.js`); empty for others.
-        lines: value, (r,), and waves, (r, `WAVES`), of the linear twins from lines (r, rows, m); None for a number
-            without waves.
+        lines: waves of the linear twins, (r, `WAVES`), from lines (r, rows, m); None for a number without waves.
     """
 
     of: Callable[[Vector, Details, Runs], Values]
     page: str = ""
-    lines: Callable[[Complex, Details, Runs, TwinLines], tuple[Vector, Complex]] | None = None
+    lines: Callable[[Complex, Details, Runs, TwinLines], Complex] | None = None
 
 
 def _accept(*_: object) -> None:

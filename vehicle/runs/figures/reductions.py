@@ -64,17 +64,15 @@ def _rms_of_wheels(rows: Vector, details: Details, runs: Runs) -> Values:
     return values if values.waves is None else values._replace(waves=values.waves / np.sqrt(rows.shape[1]))
 
 
-def _line_rms(lines: Complex, details: Details, _: Runs, twin: TwinLines) -> tuple[Vector, Complex]:
-    """Return the root of a sum of mean squares of lines, and its waves."""
+def _line_waves(lines: Complex, details: Details, _: Runs, twin: TwinLines) -> Complex:
+    """Return the waves of the root of a sum of mean squares of lines."""
     if details.band:
         lines = lines[:, :, lines_in_band(twin.frequency, (details.band[0], details.band[1]))]
-    return np.sqrt(np.sum(np.abs(lines) ** 2, axis=(1, 2))), overall_waves(lines)
+    return overall_waves(lines)
 
 
-def _line_rms_of_wheels(lines: Complex, details: Details, runs: Runs, twin: TwinLines) -> tuple[Vector, Complex]:
-    value, waves = _line_rms(lines, details, runs, twin)
-    wheels = np.sqrt(lines.shape[1])
-    return value / wheels, waves / wheels
+def _line_waves_of_wheels(lines: Complex, details: Details, runs: Runs, twin: TwinLines) -> Complex:
+    return np.asarray(_line_waves(lines, details, runs, twin) / np.sqrt(lines.shape[1]))
 
 
 def _ratio(rows: Vector, details: Details, runs: Runs) -> Values:
@@ -171,8 +169,8 @@ def _first_slip(_: Vector, details: Details, runs: Runs) -> Values:
     return Values(np.fmin.reduce(each))
 
 
-RMS = Reduction(of=_rms_of_channels, page="rms", lines=_line_rms)
-WHEEL_RMS = Reduction(of=_rms_of_wheels, page="wheel_rms", lines=_line_rms_of_wheels)
+RMS = Reduction(of=_rms_of_channels, page="rms", lines=_line_waves)
+WHEEL_RMS = Reduction(of=_rms_of_wheels, page="wheel_rms", lines=_line_waves_of_wheels)
 RATIO = Reduction(of=_ratio)
 PEAK = Reduction(of=lambda rows, *_: Values(np.abs(rows).max(axis=(1, 2))), page="peak")
 PEAK_TO_PEAK = Reduction(of=lambda rows, *_: Values(np.ptp(rows, axis=2).max(axis=1)), page="peak_to_peak")

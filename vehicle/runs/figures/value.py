@@ -30,8 +30,8 @@ def values_of(chosen: ChosenFigure, runs: Runs) -> Values:
         return values
     if not {*chosen.channels_of(runs.vehicles[0])} <= {*twin.channels}:
         return values
-    value, waves = figure.reduces.lines(figure.reads.lines(chosen, runs, twin), chosen, runs, twin)
-    return Values(values.value, *paired(values.value, values.error, values.waves, value, waves))
+    waves = figure.reduces.lines(figure.reads.lines(chosen, runs, twin), chosen, runs, twin)
+    return Values(values.value, *paired(values.error, values.waves, waves))
 
 
 def require_unit(chosen: ChosenFigure, unit: str, units: Mapping[str, str]) -> None:

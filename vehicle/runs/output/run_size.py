@@ -14,13 +14,13 @@ from vehicle.mapped_table import scratch_folder, size_in_memory
 BYTES = {"npz": 8.0, "h5": 8.0, "mf4": 8.0, "mat": 8.0, "uff": 8.0, "rpc": 4.0, "csv": 13.0}
 """Size of a sample of a channel in a file [byte]; csv: nine digits, sign, point and comma."""
 
-BESIDE, OF_SAMPLE = 0.45e9, 200.0
-"""Memory of a run with its files [byte]: program, model and short transforms; for each sample plates and an evaluation.
+BESIDE, OF_SAMPLE = 0.35e9, 260.0
+"""Memory of a run with its files [byte]: program, model and blocks; for each sample plates and an evaluation.
 
-Largest own memory of runs of `focus_road` at 1 kHz with all 61 channels, in npz and h5, to which libraries and pages of
-the file add 0.1 or more, and `run_memory` [GB]: 300 s 0.31 and 0.51; 600 s 0.42 and 0.57; 900 s 0.52 and 0.63; 1200 s
-0.48 and 0.69; an hour with pictures and report 1.24 and 1.17; MuJoCo, 300 s 0.34 and 0.51. From 2^20 samples on,
-transforms are made in blocks.
+Largest memory of runs of `focus_road` at 1 kHz on four plates, with libraries and pages of the file in memory, and
+`run_memory` [GB], with all 61 channels: 600 s, h5 without pictures 0.35 and 0.51; 600 s, 183 channels with
+loads 0.48 and 0.51; 1200 s with pictures and report 0.58 and 0.66; an hour, h5 without them 1.12, with them 1.23, and
+1.29; MuJoCo, 150 s 0.38 and 0.47.
 """
 
 RECORDED = 64

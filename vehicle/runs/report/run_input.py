@@ -1,6 +1,7 @@
 """Inputs of the runs of a report: their words, the runs that are compared, and the error of a change on one road."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -72,7 +73,10 @@ def change_half_width(first: FinishedRun, run: FinishedRun) -> float | None:
     recorded = all(name in each.recording.channels for each in (first, run) for name in names)
     if not first.runs.random or _same_for_both(first) != _same_for_both(run) or not recorded:
         return None
-    before, after = (values_of(ChosenFigure(quantity=WEIGHTED), each.runs) for each in (first, run))
+    runs = [first.runs, run.runs]
+    if any(each.twin is None for each in runs):  # what a twin leaves compares with no whole waves
+        runs = [replace(each, period=None) for each in runs]
+    before, after = (values_of(ChosenFigure(quantity=WEIGHTED), each) for each in runs)
     assert before.waves is not None and after.waves is not None  # a comfort value on a random road
     return 100.0 * float(STUDENT_95 * difference_error(before.waves, after.waves)[0] / before.value[0])
 
@@ -80,5 +84,5 @@ def change_half_width(first: FinishedRun, run: FinishedRun) -> float | None:
 def _same_for_both(run: FinishedRun) -> tuple[object, ...]:
     """Return what two runs on one road have in common: road, level, and evaluated span."""
     road = run.summary.input.road or {}
-    parts = (road.get(key) for key in ("class", "profile", "speed_kmh", "seed", "coherence"))
+    parts = (road.get(key) for key in ("class", "profile", "speed_kmh", "seed", "coherence", "repeats_after_s"))
     return *parts, run.summary.input.rms_m, run.summary.input.duration_s, run.skip

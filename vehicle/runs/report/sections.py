@@ -13,6 +13,7 @@ from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import plot_time
 from vehicle.engines.linear.car_modes import Mode
+from vehicle.mapped_table import release
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.names import CORNERS, channel_words, point_words, side_of, slip_words
 from vehicle.runs.report.comfort_class import REACTIONS, reactions
@@ -307,6 +308,7 @@ def tables(run: FinishedRun) -> Markup:
     for name, values in recording.channels.items():
         numbers = (float(np.sqrt(np.mean(values**2))), float(values.min()), float(values.max()))
         levels.append((_channel_title(name), recording.units[name], *(number(value, 4) for value in numbers)))
+        release(values)
     peaks = [
         (
             _channel_title(channel, f"to the {plate}" if plate else ""),

@@ -24,13 +24,13 @@ the variance of the mean. The first `WAVES` are stored with each run, and mean |
 rms_a - rms_b with two degrees of freedom for each m.
 
 On a road that repeats after the evaluated span, the value of a linear car is the same for all phases, so what a run
-differs by is what its linear twin on the same road does not explain (a control variate). With the twin's value and
-waves, W' and C'_m, the waves that are left are
+differs by is what its linear twin on the same road does not explain (a control variate). With the waves C'_m of the
+twin, the waves that are left are
 
-    R_m = C_m - (rms / rms') C'_m,
+    R_m = C_m - b C'_m,    b = Re sum C'_m^* C_m / sum |C'_m|^2,
 
-and mean |R_m|^2 is the variance of the value over roads of the class (`paired`), mean |R_m,a - R_m,b|^2 that of a
-difference.
+widened for the fitted b, and mean |R_m|^2 is the variance of the value over roads of the class (`paired`), mean
+|R_m,a - R_m,b|^2 that of a difference.
 
 Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and Welch, Communications of the ACM 24
 (1981): variance of a mean from the spectrum near zero frequency; Ripley, Stochastic Simulation (1987), section 5.3:
@@ -44,7 +44,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from vehicle.signals.analysis.samples import Complex, Vector
-from vehicle.signals.analysis.spectra import band_periodogram
+from vehicle.signals.analysis.spectra import lines_of_band, record_lines
 
 WAVES = 3
 """Number of stored C_m. They reach 3/T, 0.4 Hz for 8 s: about the half-power bandwidth of the modes from 2 Hz on. With
@@ -87,13 +87,13 @@ def wave_error(waves: Complex) -> Vector:
     return np.asarray(STUDENT_95 / NORMAL_95 * np.sqrt(np.mean(np.abs(waves) ** 2, axis=1)))
 
 
-def paired(value: Vector, error: Vector, waves: Complex, twin_value: Vector, twin_waves: Complex) -> Paired:
+def paired(error: Vector, waves: Complex, twin_waves: Complex) -> Paired:
     """Return the error of values with their linear twins, see `Paired`.
 
     Args:
-        value, error: values of r runs and their standard errors without twins, in one unit; (r,).
+        error: standard errors of r runs without twins; (r,).
         waves: C_m of the runs; (r, WAVES).
-        twin_value, twin_waves: the same of the twins; 0 without a twin.
+        twin_waves: C'_m of the twins; 0 without a twin.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         factor = np.sum((twin_waves.conj() * waves).real, axis=1) / np.sum(np.abs(twin_waves) ** 2, axis=1)
@@ -118,10 +118,11 @@ def weighted_lines(time_step: float, weighted: Vector, factors: Sequence[float])
     Returns:
         Complex lines from the first to 0.8 of the Nyquist frequency, as all weightings end far below; (3, m).
     """
-    band = (1.0 / (weighted.shape[1] * time_step), 0.4 / time_step)
-    lines = band_periodogram(time_step, np.array(factors)[:, None] * weighted, band).lines
-    assert lines is not None  # a periodogram
-    return lines
+    count = weighted.shape[1]
+    inside = lines_of_band(count, time_step, (1.0 / (count * time_step), 0.4 / time_step))
+    # Axis by axis, which takes less memory.
+    rows = (factor * row for factor, row in zip(factors, weighted, strict=True))
+    return record_lines(rows, len(weighted), count, inside)
 
 
 def overall_error(lines: Complex) -> Vector:

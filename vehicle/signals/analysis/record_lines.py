@@ -71,7 +71,7 @@ class ChirpTransform:
         """Return the lines of a block; (last - first,). block: samples, at most `size`."""
         spectrum = np.fft.fft(block * self.before[: block.size], self.length)
         spectrum *= self.kernel
-        return np.asarray(np.fft.ifft(spectrum)[: self.count] * self.after)
+        return np.asarray(np.fft.ifft(spectrum, out=spectrum)[: self.count] * self.after)
 
 
 class RecordLines:
@@ -109,5 +109,6 @@ class RecordLines:
         lines = np.zeros(self.turn.size, dtype=np.complex128)
         for part in self.parts[::-1]:
             # Horner over the blocks, the last block first.
-            lines = lines * self.turn + self.zoom(part_values(part))
+            lines *= self.turn
+            lines += self.zoom(part_values(part))
         return lines

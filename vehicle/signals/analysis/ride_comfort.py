@@ -175,7 +175,7 @@ def with_twins(columns: Mapping[str, Vector], twins: Mapping[str, Vector]) -> di
     for name in (column.removesuffix(ERROR) for column in columns if column.endswith(ERROR)):
         value, error = columns[name], columns[f"{name}{ERROR}"]
         waves, of_twins = (waves_of(each, name) for each in (columns, twins))
-        pair = paired(value, error * value, waves, twins[name], of_twins)
+        pair = paired(error * value, waves, of_twins)
         relative = np.divide(pair.error, value, out=np.zeros_like(value), where=value > 0.0)
         result |= _errors(name, relative, pair.waves) | {f"{name}{EXPLAINED}": pair.explained}
     return result

@@ -1,5 +1,6 @@
 """One-sided power spectral densities and the RMS in a band; sum(S df) equals the mean square (Parseval)."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,35 +93,64 @@ def periodogram(time_step: float, signals: ArrayLike) -> PowerSpectralDensity:
 def _periodogram(step: float, array: Vector, lines: slice) -> PowerSpectralDensity:
     """Return the selected lines of the periodogram of signals (k, n)."""
     samples = array.shape[1]
+    spectra, sides = _spectra(array, len(array), samples, lines)
+    density = sides * np.abs(spectra) ** 2 * step / samples
+    # |line|^2 = S df = c |X|^2/n^2.
+    spectra *= np.sqrt(sides) / samples
+    return PowerSpectralDensity(
+        frequency=np.fft.rfftfreq(samples, step).astype(np.float64)[lines],
+        density=density,
+        resolution_hz=1.0 / (samples * step),
+        averages=1.0,
+        lines=spectra,
+    )
+
+
+def _spectra(rows: Iterable[Vector], count: int, samples: int, lines: slice) -> tuple[Complex, Vector]:
+    """Return selected lines of the transforms of records, (count, m), and their sides c, 1 or 2, (m,)."""
     sides = np.full(samples // 2 + 1, 2.0)
     # Lines at 0 Hz and at Nyquist have no mirror image.
     sides[0] = 1.0
     if samples % 2 == 0:
         sides[-1] = 1.0
     transform = RecordLines(samples, *lines.indices(sides.size)[:2])
-    spectra = np.array([transform.of(row.__getitem__) for row in array])
-    density = sides[lines] * np.abs(spectra) ** 2 * step / samples
-    return PowerSpectralDensity(
-        frequency=np.fft.rfftfreq(samples, step).astype(np.float64)[lines],
-        density=density,
-        resolution_hz=1.0 / (samples * step),
-        averages=1.0,
-        # |line|^2 = S df = c |X|^2/n^2.
-        lines=spectra * (np.sqrt(sides[lines]) / samples),
-    )
+    sides = sides[lines]
+    spectra = np.empty((count, sides.size), dtype=np.complex128)
+    for row, of_row in zip(rows, spectra, strict=True):
+        of_row[:] = transform.of(row.__getitem__)
+    return spectra, sides
+
+
+def record_lines(rows: Iterable[Vector], count: int, samples: int, lines: slice) -> Complex:
+    """Return the lines of `periodogram` of records that are read one after the other, without the densities.
+
+    Args:
+        rows: records, (n,) each.
+        count: number of records.
+        samples: their length n.
+        lines: slice of the lines, see `lines_of_band`.
+    """
+    spectra, sides = _spectra(rows, count, samples, lines)
+    spectra *= np.sqrt(sides) / samples
+    return spectra
 
 
 def band_periodogram(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> PowerSpectralDensity:
     """Return the periodogram of the whole record, limited to the lines in the closed band [Hz]."""
     step = checked_time_step(time_step)
     edges, array = checked_band(band, step), checked_signals("signals", signals)
-    inside = np.flatnonzero(lines_in_band(np.fft.rfftfreq(array.shape[1], step).astype(np.float64), edges))
+    return _periodogram(step, array, lines_of_band(array.shape[1], step, edges))
+
+
+def lines_of_band(samples: int, step: float, band: tuple[float, float]) -> slice:
+    """Return the lines of a record of n samples in the closed band [Hz]."""
+    inside = np.flatnonzero(lines_in_band(np.fft.rfftfreq(samples, step).astype(np.float64), band))
     if not inside.size:
         raise DataError(
-            f"record too short: its frequency lines are {1.0 / (array.shape[1] * step):g} Hz apart, and none "
-            f"lies in {edges[0]:g} to {edges[1]:g} Hz; record at least {1.0 / (edges[1] - edges[0]):g} s"
+            f"record too short: its frequency lines are {1.0 / (samples * step):g} Hz apart, and none "
+            f"lies in {band[0]:g} to {band[1]:g} Hz; record at least {1.0 / (band[1] - band[0]):g} s"
         )
-    return _periodogram(step, array, slice(inside[0], inside[-1] + 1))
+    return slice(inside[0], inside[-1] + 1)
 
 
 def band_rms(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> Vector:

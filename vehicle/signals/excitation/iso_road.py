@@ -201,6 +201,21 @@ class IsoRoad:
         return self.envelope.height_and_slope(x, np.pad(z, margin, mode="wrap"), uniform_axis(steps, step, 0.0))
 
 
+def _repeated(values: Vector, count: int) -> Vector:
+    """Return the first values of a periodic record; unlike `numpy.resize` without a second period in memory."""
+    result = np.empty(count)
+    for first in range(0, count, values.size):
+        result[first : first + values.size] = values[: count - first]
+    return result
+
+
+def _finished(values: Vector) -> Vector:
+    """Return values for a signal, which does not copy what is read-only."""
+    values += 0.0  # avoids -0.0 in files
+    values.setflags(write=False)
+    return values
+
+
 def check_patch(patch: float) -> None:
     """Reject a length of the contact patch [m] that is not from 0 to 1 m."""
     if not 0.0 <= patch < 1.0:
@@ -260,14 +275,17 @@ def drive(
     for wheel, (distance, side) in wheels.items():
         # 0.8 of the Nyquist frequency, as for every generated signal. Heights modulo the period, or cut to the record.
         height, slope = road.contact(-distance, step, period, side, 0.4 / step)
-        z, delayed_time = np.resize(height, steps + 1), np.arange(steps + 1) / rate - distance / speed
-        rise, rise_rate = half_cosine_at(delayed_time, RISE_S), half_cosine_rate_at(delayed_time, RISE_S)
-        displacement[wheel] = z * rise + 0.0  # adding 0.0 avoids -0.0 in files
-        bare = road.bare.contact(-distance, step, period, side, 0.4 / step)[0]
-        profile[wheel] = np.resize(bare, steps + 1) * rise + 0.0
+        delayed_time = np.arange(steps + 1) / rate - distance / speed
+        rise = half_cosine_at(delayed_time, RISE_S)
         if slope is not None:
             # d(w z)/dt = V tan(beta) w + w' z.
-            slopes[wheel] = speed * np.resize(slope, steps + 1) * rise + rise_rate * z + 0.0
+            rising = half_cosine_rate_at(delayed_time, RISE_S) * _repeated(height, steps + 1)
+            slopes[wheel] = _finished(speed * _repeated(slope, steps + 1) * rise + rising)
+        displacement[wheel] = _finished(_repeated(height, steps + 1) * rise)
+        del delayed_time, height, slope  # a long road needs little memory beside its next transform
+        profile[wheel] = _finished(
+            _repeated(road.bare.contact(-distance, step, period, side, 0.4 / step)[0], steps + 1) * rise
+        )
     return Signal(
         time=uniform_time(samples=steps + 1, timestep=1.0 / rate),
         displacement=displacement,

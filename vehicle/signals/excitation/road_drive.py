@@ -181,8 +181,12 @@ class RoadDrive:
             return self.start
         if self.road == LEVEL:
             return SKIP_S
-        last = max(behind for _, behind, _ in self.wheels) / (self.speed / 3.6)
-        return max(SKIP_S, math.ceil(10.0 * (RISE_S + AFTER_RISE_S + last)) / 10.0)
+        return max(SKIP_S, math.ceil(10.0 * (self._risen + AFTER_RISE_S)) / 10.0)
+
+    @property
+    def _risen(self) -> float:
+        """Time at which the road has risen under the last wheel [s]; the road is not level."""
+        return RISE_S + max(behind for _, behind, _ in self.wheels) / (self.speed / 3.6)
 
     @property
     def overrides(self) -> tuple[str, ...]:
@@ -204,16 +208,25 @@ class RoadDrive:
     def span(self) -> float | None:
         """Length of the evaluated span after which the road repeats [s]; None for a road that does not repeat.
 
-        A drive that ends before the evaluation begins has no such span.
+        A drive that ends before the evaluation begins has no such span, nor one that is evaluated while the road rises.
         """
+        if not self.repeats or self.skip < self._risen:
+            return None
         span = (USUAL_DURATION if self.duration is None else self.duration) - self.skip
-        return span if self.repeats and self.skip >= 0.0 and span > 0.0 else None
+        return float(span) if span > 0.0 else None
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """Messages on the choice of the span, and on one that is too short for the small scatter."""
+        """Messages on the choice of the span, on one in which the road rises, and on a short one that scatters."""
+        chosen = (self.chosen,) if self.chosen else ()
+        if self.random and self.skip < self._risen:
+            return (
+                *chosen,
+                f"{self.name} rises from the plane until {self._risen:.3g} s, but is evaluated from "
+                f"{self.skip:g} s: comfort is too low; choose a later --skip",
+            )
         if self.span is None or self.span >= SHORTEST_SPAN_S * (1.0 - 1e-9):
-            return (self.chosen,) if self.chosen else ()
+            return chosen
         return (
             f"{self.span:.3g} s of road {self.name} are evaluated: from {SHORTEST_SPAN_S:g} s on comfort scatters by "
             "less than 1 %; choose a longer --duration",
@@ -241,7 +254,9 @@ class RoadDrive:
             return replace(
                 signal, random=self.random, left_obstacle=left, notices=self.notices, repeats_after=self.span
             )
-        return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
+        return replace(
+            signal, notices=(*self.notices, *road.notices, *acceleration_events(signal.displacement, signal.timestep))
+        )
 
     def _road(self) -> tuple[IsoRoad | MeasuredRoad, float]:
         """Return the road, which is not level, and the length of the drive [s]."""
@@ -259,7 +274,7 @@ class RoadDrive:
             track=self.track,
             coherence=self.coherence,
             patch=self.patch,
-            quadruples=self.repeats,
+            quadruples=self.span is not None,
             envelope=self.envelope,
         )
         return iso_road, USUAL_DURATION if duration is None else duration
@@ -359,8 +374,8 @@ Source = TypeVar("Source")
 def evaluated_from(source: Source, start: float | None) -> Source:
     """Return a road evaluated from a start on [s], None for the default; a class repeats after its evaluated span.
 
-    Other inputs do not depend on the start, and are returned unchanged.
+    An obstacle and other inputs do not depend on the start, and are returned unchanged.
     """
-    if isinstance(source, RoadDrive) and source.repeats and start is not None and start != source.skip:
+    if isinstance(source, RoadDrive) and source.random and start is not None and start != source.skip:
         return replace(source, start=start)
     return source

@@ -12,34 +12,28 @@ The derivatives of s over the parameters solve the linearised equations of all s
 
 from __future__ import annotations
 
+import ctypes
 import itertools
-import math
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 import scipy
 
 from vehicle.arrays import Mask, Vector
+from vehicle.core.library import core
+from vehicle.core.records import packed
 from vehicle.studies.dampers.damper_law import EXPONENT, SOFT_STEP, STEP, DamperLaw, DamperValues, values_of
 
 Counts = npt.NDArray[np.intp]
-
-CLOSED = 1e-10
-"""Residual of a sample over the sum of its forces."""
-
-ITERATIONS = 60
-"""Maximum number of iterations of a sample: Newton's method, with bisection where it leaves the bracket."""
-
-SLOW = 8
-"""Number of iterations from which on every second one is a bisection: the force may fall with the velocity."""
-
 
 FASTEST_GROWTH = 2.0
 """Maximum ratio of two successive steps for the difference of second order, which is stable up to 2.4."""
 
 
-class Motion(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Motion:
     """Motion of a damper."""
 
     time: Vector  # time, displacement, velocity: [s], [m], [m/s]; (n,)
@@ -50,6 +44,7 @@ class Motion(NamedTuple):
     # velocities; (n - 1,), or 1 for all
     parts: Counts | int = 1
 
+    @cached_property
     def refined(self) -> tuple[Motion, Counts]:
         """Return the motion with its parts as samples, and the numbers of the samples of this motion among them."""
         rows = np.concatenate([[0], np.cumsum(np.broadcast_to(self.parts, self.time.size - 1))])
@@ -57,17 +52,28 @@ class Motion(NamedTuple):
         cubic = scipy.interpolate.CubicHermiteSpline(self.time, self.displacement, self.velocity)
         return Motion(time, cubic(time), cubic.derivative()(time), self.first_force), rows
 
+    @cached_property
+    def rates(self) -> Vector:
+        """Return a_0, a_1 and a_2 of the backward difference at each sample [1/s]; (3, n), zeros at the first."""
+        steps = np.diff(self.time, prepend=self.time[0] - 1.0)
+        ratio = steps / np.concatenate([[np.inf, np.inf], steps[1:-1]])
+        ratio[ratio > FASTEST_GROWTH] = 0.0
+        ratio[0] = 0.0
+        weights = np.stack([(1.0 + 2.0 * ratio) / (1.0 + ratio), -(1.0 + ratio), ratio**2 / (1.0 + ratio)]) / steps
+        weights[:, 0] = 0.0
+        return np.asarray(weights)
+
 
 def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tuple[Vector, Vector]:
     """Return the force [N], (n,), and its derivatives over the parameters, (n, p).
 
     Args:
-        parameters: in the order of `law.parameters`, SI units; velocities are widths of segments; (p,).
+        parameters: in the order of `law.parameters`, SI units; with widths and excess, see `plain_parameters`; (p,).
     """
     values = values_of(law, parameters)
     if not law.series:
         return _rigid(law, values, motion)
-    fine, rows = motion.refined()
+    fine, rows = motion.refined
     deflection, inner, sticking = _march(values, fine)
     columns = _slopes(law, values, fine, deflection, inner, sticking)
     return values.series * deflection[rows], columns[rows]
@@ -104,74 +110,27 @@ def _curve(values: DamperValues, step_width: float) -> tuple[list[float], list[f
     return knots, slopes, [forces[i] - c * knots[i] for i, c in zip(anchors, slopes, strict=True)]
 
 
-def _difference(time: Vector) -> Vector:
-    """Return a_0, a_1 and a_2 of the backward difference at each sample [1/s]; (3, n), zeros at the first."""
-    steps = np.diff(time, prepend=time[0] - 1.0)
-    ratio = steps / np.concatenate([[np.inf, np.inf], steps[1:-1]])
-    ratio[ratio > FASTEST_GROWTH] = 0.0
-    ratio[0] = 0.0
-    weights = np.stack([(1.0 + 2.0 * ratio) / (1.0 + ratio), -(1.0 + ratio), ratio**2 / (1.0 + ratio)]) / steps
-    weights[:, 0] = 0.0
-    return np.asarray(weights)
-
-
 def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, Mask]:
     """Return deflection s [m], inner velocity w [m/s], (n,), and True where a Jenkins element sticks, (m, n)."""
-    knots, slopes, offsets = _curve(values, STEP)
-    edges = [*knots, np.inf]
-    spring, gas, offset = values.series, values.gas_stiffness, values.offset
-    rates, near, far = _difference(motion.time).tolist()
+    knots, slopes, offsets = map(np.array, _curve(values, STEP))
+    samples, elements = motion.time.size, values.limit.size
     sliding, at_rest, critical = values.friction
-    drop = at_rest - sliding
-    elements = list(zip(values.stiffness.tolist(), values.limit.tolist(), strict=True))
-    forces = [0.0] * len(elements)
-    previous = before = motion.first_force / spring
-    last = float(motion.displacement[0])
-    deflection, inner, sticking = [previous], [float(motion.velocity[0])], [[True] * len(elements)]
-    segment = int(np.searchsorted(knots, inner[0]))
-    s = previous
-    for at, (x, v) in enumerate(zip(motion.displacement.tolist()[1:], motion.velocity.tolist()[1:], strict=True), 1):
-        rate, back = rates[at], -near[at] * previous - far[at] * before
-        low, high, anchor = -np.inf, np.inf, x - last + previous
-        for count in range(ITERATIONS):
-            w = v - rate * s + back
-            while w > edges[segment]:
-                segment += 1
-            while segment and w <= edges[segment - 1]:
-                segment -= 1
-            slope = slopes[segment]
-            curve = slope * w + offsets[segment]
-            if drop:
-                weight = math.exp(-((abs(w) / critical) ** EXPONENT))
-                curve -= math.copysign(drop * (1.0 - weight), w)
-                # Where the force falls with the velocity, its slope is left out: a shorter step of the iteration.
-                slope = max(slope - drop * weight * EXPONENT * abs(w) ** (EXPONENT - 1.0) / critical**EXPONENT, 0.0)
-            size = abs(curve) + abs(offset)
-            error, total = spring * s - curve - gas * (x - s) - offset, spring + rate * slope + gas
-            for (k, limit), t in zip(elements, forces, strict=True):
-                size += limit
-                t += k * (anchor - s)
-                if t > limit:
-                    error -= limit
-                elif t < -limit:
-                    error += limit
-                else:
-                    error -= t
-                    total += k
-            if abs(error) <= CLOSED * size:
-                break
-            low, high = (low, min(high, s)) if error > 0.0 else (max(low, s), high)
-            s -= error / total
-            if not low < s < high or (count > SLOW and count % 2 and high - low < math.inf):
-                s = 0.5 * (low + high)
-        change = anchor - s
-        states = [t + k * change for (k, _), t in zip(elements, forces, strict=True)]
-        sticking.append([-limit <= t <= limit for (_, limit), t in zip(elements, states, strict=True)])
-        forces = [min(max(t, -limit), limit) for (_, limit), t in zip(elements, states, strict=True)]
-        deflection.append(s)
-        inner.append(v - rate * s + back)
-        before, previous, last = previous, s, x
-    return np.array(deflection), np.array(inner), np.array(sticking).reshape(len(sticking), len(elements)).T
+    deflection, inner = np.empty(samples), np.empty(samples)
+    sticking = np.empty((samples, elements), dtype=np.uint8)
+    rig = packed(
+        "DamperRig",
+        {
+            "displacement": np.ascontiguousarray(motion.displacement),
+            "velocity": np.ascontiguousarray(motion.velocity), "rates": motion.rates,
+            "knots": knots, "slopes": slopes, "offsets": offsets,
+            "stiffness": values.stiffness, "limit": values.limit, "forces": np.zeros(elements),
+            "spring": values.series, "gas": values.gas_stiffness, "offset": values.offset, "drop": at_rest - sliding,
+            "critical": critical, "first": motion.first_force,
+            "deflection": deflection, "inner": inner, "sticking": sticking,
+        },
+    )  # fmt: skip
+    core().core_damper_rig(ctypes.c_void_p(rig.address))
+    return deflection, inner, np.ascontiguousarray(sticking.T != 0)
 
 
 def _curve_columns(law: DamperLaw, values: DamperValues, velocity: Vector, step_width: float) -> tuple[Vector, Vector]:
@@ -200,20 +159,37 @@ def _curve_columns(law: DamperLaw, values: DamperValues, velocity: Vector, step_
         weight = np.exp(-ratio)
         change = (at_rest - sliding) * weight * EXPONENT * ratio
         slope = slope - change / np.maximum(size, 1e-30)
-        curve = np.column_stack([curve, sign * (1.0 - weight), stuck - sign * (1.0 - weight), sign * change / critical])
+        curve = np.column_stack([curve, stuck, stuck - sign * (1.0 - weight), sign * change / critical])
     return slope, curve
+
+
+def steady_force(law: DamperLaw, parameters: Vector, velocity: Vector) -> tuple[Vector, Vector]:
+    """Return the force of curve and sliding friction at constant velocities [N], (n,), and its derivatives, (n, p)."""
+    values, names = values_of(law, parameters), list(law.parameters)
+    _, curve = _curve_columns(law, values, velocity, STEP)
+    columns = np.zeros((velocity.size, len(names)))
+    columns[:, 1 : 1 + curve.shape[1]] = curve
+    for i in range(law.elements):
+        columns[:, names.index(f"slider_limit_{i + 1}")] = np.sign(velocity)
+    return _curve_force(values, velocity, STEP) + np.sign(velocity) * np.sum(values.limit), columns
+
+
+def _curve_force(values: DamperValues, velocity: Vector, step_width: float) -> Vector:
+    """Return F_c with Coulomb or Stribeck friction [N] at velocities [m/s]; (n,)."""
+    knots, slopes, offsets = _curve(values, step_width)
+    segment = np.searchsorted(knots, velocity)
+    force = np.array(slopes)[segment] * velocity + np.array(offsets)[segment]
+    sliding, at_rest, critical = values.friction
+    if at_rest > sliding:
+        force -= np.sign(velocity) * (at_rest - sliding) * -np.expm1(-((np.abs(velocity) / critical) ** EXPONENT))
+    return np.asarray(force)
 
 
 def _rigid(law: DamperLaw, values: DamperValues, motion: Motion) -> tuple[Vector, Vector]:
     """Return force and derivatives without a series stiffness."""
     x, v = motion.displacement, motion.velocity
     _, curve = _curve_columns(law, values, v, SOFT_STEP)
-    knots, slopes, offsets = _curve(values, SOFT_STEP)
-    segment = np.searchsorted(knots, v)
-    force = np.array(slopes)[segment] * v + np.array(offsets)[segment] + values.gas_stiffness * x + values.offset
-    sliding, at_rest, critical = values.friction
-    if law.friction == "stribeck":
-        force -= np.sign(v) * (at_rest - sliding) * -np.expm1(-((np.abs(v) / critical) ** EXPONENT))
+    force = _curve_force(values, v, SOFT_STEP) + values.gas_stiffness * x + values.offset
     columns = [-np.ones((x.size, 1)), curve]
     for k, limit in zip(values.stiffness, values.limit, strict=True):
         path = _slider_force(x, float(k), float(limit))
@@ -229,11 +205,12 @@ def _rigid(law: DamperLaw, values: DamperValues, motion: Motion) -> tuple[Vector
 
 def _slider_force(x: Vector, stiffness: float, limit: float) -> Vector:
     """Return the force of a Jenkins element [N] over displacements [m], from rest at the first; (n,)."""
-
-    def next_force(force: float, dx: float) -> float:
-        return min(max(force + stiffness * dx, -limit), limit)
-
-    return np.array(list(itertools.accumulate(np.diff(x).tolist(), next_force, initial=0.0)))
+    path, force = np.ascontiguousarray(x), np.empty(x.size)
+    core().core_slider(
+        ctypes.c_int64(x.size), path.ctypes.data_as(ctypes.c_void_p), ctypes.c_double(stiffness),
+        ctypes.c_double(limit), force.ctypes.data_as(ctypes.c_void_p),
+    )  # fmt: skip
+    return force
 
 
 def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: Vector, sticking: Mask) -> Vector:
@@ -244,7 +221,7 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
     du dk_i where it sticks, dt_i = +-dl_i where it slips; k_i is the limit l_i over the stroke.
     """
     n, m = s.size, len(values.stiffness)
-    rates, near, far = _difference(motion.time)
+    rates, near, far = motion.rates
     names = list(law.parameters)
     u = motion.displacement - s
     du = np.diff(u, prepend=u[0])

@@ -125,7 +125,7 @@ class DamperValues:
 
 
 def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
-    """Return the numbers of a law for parameters in the order of `law.parameters`; velocities are widths."""
+    """Return the numbers of a law for parameters in the order of `law.parameters`, widths and excess."""
     number = dict(zip(law.parameters, parameters.tolist(), strict=True))
     sides = law.sides * (2 if len(law.sides) == 1 else 1)
     slopes = [[number[f"{side}damping_{j + 1}"] for j in range(law.bends + 1)] for side in sides]
@@ -138,7 +138,7 @@ def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
         widths=np.array(widths).reshape(2, law.bends),
         stiffness=limit / stroke,
         limit=limit,
-        friction=(sliding, number.get("friction_at_rest", sliding), number.get("stribeck_velocity", 1.0)),
+        friction=(sliding, sliding + number.get("friction_at_rest", 0.0), number.get("stribeck_velocity", 1.0)),
         offset=-number["gas_force"],
         gas_stiffness=number.get("gas_stiffness", 0.0),
         series=number.get("series_stiffness", np.inf),
@@ -146,10 +146,20 @@ def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
 
 
 def plain_parameters(law: DamperLaw, parameters: Vector) -> Vector:
-    """Return the parameters with velocities of breakpoints instead of the widths of their segments; (p,)."""
-    plain = parameters.copy()
+    """Return velocities of breakpoints and friction at rest from widths of segments and excess over sliding; (p,)."""
+    return np.asarray(sums_of(law) @ parameters)
+
+
+def sums_of(law: DamperLaw) -> Vector:
+    """Return the matrix from fitted to plain parameters, (p, p).
+
+    Widths and excess are positive: bends are in order, and friction at rest is not below sliding friction.
+    """
     names = list(law.parameters)
+    sums = np.eye(len(names))
     for side in law.sides:
         at = [names.index(f"{side}velocity_{j + 1}") for j in range(law.bends)]
-        plain[at] = np.cumsum(plain[at])
-    return plain
+        sums[np.ix_(at, at)] = np.tril(np.ones((len(at), len(at))))
+    if law.friction == "stribeck":
+        sums[names.index("friction_at_rest"), names.index("friction")] = 1.0
+    return sums

@@ -1,16 +1,26 @@
 """Report of fitted dampers: laws, errors of the tests, pictures of every test, and the lines of the vehicle file."""
 
+import math
 from collections.abc import Sequence
 from functools import partial
 
 from markupsafe import Markup
 
 from vehicle.digits import number
-from vehicle.drawing.rendering.damper_plot import DamperLoop, plot_damper, plot_settings
+from vehicle.drawing.rendering.damper_plot import DamperLoop, plot_band, plot_damper, plot_settings
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
-from vehicle.studies.dampers.damper_text import SHOWN_LAWS, caption_of, vehicle_lines
+from vehicle.studies.dampers.damper_band import band_of
+from vehicle.studies.dampers.damper_ranges import RATIO
+from vehicle.studies.dampers.damper_text import (
+    candidates,
+    caption_of,
+    choice_sentence,
+    expected_rows,
+    range_rows,
+    vehicle_lines,
+)
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 from vehicle.studies.dampers.over_condition import control_lines, curve_lines, settings_of
 
@@ -57,6 +67,11 @@ def _conditions(fits: Sequence[FittedDamper]) -> Markup:
     return fill("settings", heads=heads, rows=rows, figure=figure, lines=control_lines(fits))
 
 
+def shown(value: float) -> str:
+    """Return a number with three digits, or a dash for an unknown one."""
+    return "-" if math.isnan(value) else number(value, 3)
+
+
 def _law(fitted: FittedDamper) -> Markup:
     """Return law, parameters, errors and pictures of the tests, and the lines of the vehicle file."""
     fit = fitted.fit
@@ -68,14 +83,16 @@ def _law(fitted: FittedDamper) -> Markup:
         (f"{test.name}: {test.caption}", *(number(error, 3) for error in errors))
         for test, *errors in zip(fitted.tests, fit.fitted, fit.left_out, fit.whole, strict=True)
     ]
+    slow, fast = (number(1e3 * speed, 2) for speed in (fitted.speeds[0] / RATIO, RATIO * fitted.speeds[1]))
+    heads = ["law", "parameters", "left out", "slower", "faster", f"at {slow} mm/s [N]", f"at {fast} mm/s [N]"]
     laws = [
-        (each.law.title, len(each.law.parameters), number(each.left_out_error, 3))
-        for each in fitted.compared[:SHOWN_LAWS]
+        (each.fit.law.title, len(each.fit.law.parameters), *(shown(value) for value in each[1:]))
+        for each in candidates(fitted)
     ]
-    sentence = (
-        f"{fit.law.title[:1].upper()}{fit.law.title[1:]}: chosen from {len(fitted.compared)} laws as the "
-        "simplest whose error on left-out tests is within one standard error of the best."
-    )
+    ranges = [(text, shown(inside), shown(outside)) for text, outside, inside in range_rows(fitted)]
+    expected = [(text, *map(shown, errors)) for text, errors in expected_rows(fitted)]
+    band = partial(plot_band, band=band_of(fitted), tested=fitted.speeds)
+    sentence = f"{fit.law.title[:1].upper()}{fit.law.title[1:]}: {choice_sentence(fitted)}."
     return fill(
         "law",
         sentence=sentence,
@@ -83,6 +100,10 @@ def _law(fitted: FittedDamper) -> Markup:
         figure=drawing(partial(plot_damper, loops=loops_of(fitted, PAGE_POINTS)), f"Tests: {caption_of(fitted)}"),
         parameters=parameters,
         laws=laws,
+        heads=heads,
+        ranges=ranges,
+        expected=expected,
+        band=drawing(band, "Force over velocity with its band"),
         left_open=fitted.left_open(),
         noted=[f"{test.name}: {text}" for test in fitted.tests for text in test.notices],
         lines=vehicle_lines(fitted),

@@ -98,7 +98,7 @@ class DamperTest:
         """True for the samples that are fitted: all but run-up and run-down of equal swings; (n,)."""
         return self.waveform.settled
 
-    @property
+    @cached_property
     def weights(self) -> Vector:
         """Weight of the error of each sample: its time step, with velocity steps over the time of its stroke; (n,)."""
         steps = np.gradient(self.time)
@@ -119,7 +119,7 @@ class DamperTest:
         starts = starts[(starts > 0) & (starts < rows.size)]
         return np.split(rows, starts) if starts.size else np.array_split(rows, 2)
 
-    @property
+    @cached_property
     def scale(self) -> float:
         """Standard deviation of the force over time [N], to which errors are related."""
         share = np.gradient(self.time)

@@ -2,14 +2,18 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from vehicle.digits import number, rounded
 from vehicle.model.parameters.tested_range import range_lines
 from vehicle.signals.formats.csv_table import table_text
+from vehicle.studies.dampers.damper_choice import WORST
+from vehicle.studies.dampers.damper_fit import DamperFit
+from vehicle.studies.dampers.damper_force import steady_force
 from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
+from vehicle.studies.dampers.damper_ranges import RATIO, Expected, expected_error
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
 SLIP = 0.006
@@ -26,6 +30,76 @@ def caption_of(fitted: FittedDamper) -> str:
     """Return the conditions, the number and the names of the tests."""
     names, condition = ", ".join(test.name for test in fitted.tests), fitted.condition_words
     return f"{f'{condition}: ' if condition else ''}{len(fitted.tests)} test{'s'[: len(fitted.tests) > 1]}: {names}"
+
+
+class Candidate(NamedTuple):
+    """Law that was compared."""
+
+    fit: DamperFit
+    left_out: float  # error left out
+    slower: float  # slower, faster: errors in ranges of velocity that the fit does not contain; NaN if not computed
+    faster: float
+    below: float  # below, above: force at half of the slowest and at twice the fastest test [N]
+    above: float
+
+
+def candidates(fitted: FittedDamper) -> list[Candidate]:
+    """Return the laws with the least errors left out, and the chosen one."""
+    slowest, fastest = fitted.speeds
+    velocity = np.array([slowest / RATIO, RATIO * fastest])
+    shown = [
+        fit
+        for number_of_law, fit in enumerate(fitted.compared)
+        if number_of_law < SHOWN_LAWS or fit.law == fitted.fit.law
+    ]
+    rows = []
+    for fit in shown:
+        ranges = (_range_error(fit, name)[0] for name in ("slower", "faster"))
+        forces = steady_force(fit.law, fit.parameters, velocity)[0].tolist()
+        rows.append(Candidate(fit, fit.left_out_error, *ranges, *forces))
+    return rows
+
+
+def _range_error(fit: DamperFit, name: str) -> tuple[float, float]:
+    """Return the RMS error in a range over all tests, without the range in the fit and with it; NaN if unknown."""
+    squares = fit.ranges.get(name, np.full((2, 1), np.nan)) ** 2
+    inside = ~np.isnan(squares[0])
+    return tuple(np.sqrt(np.mean(squares[:, inside], axis=1)).tolist()) if inside.any() else (math.nan, math.nan)
+
+
+def range_rows(fitted: FittedDamper) -> list[tuple[str, float, float]]:
+    """Return ranges in words, with the errors there without the range in the fit, and with it."""
+    slowest, fastest = (1e3 * speed for speed in fitted.speeds)
+    texts = {
+        "slower": f"slower than {number(slowest / RATIO, 2)} mm/s, fitted to faster motion",
+        "faster": f"faster than {number(fastest / RATIO, 2)} mm/s, fitted to slower motion",
+        "smaller": "smaller half of the amplitudes, fitted to larger",
+        "larger": "larger half of the amplitudes, fitted to smaller",
+    }
+    rows = [(text, *_range_error(fitted.fit, name)) for name, text in texts.items()]
+    return [row for row in rows if not math.isnan(row[1])]
+
+
+def expected_rows(fitted: FittedDamper) -> list[tuple[str, Expected]]:
+    """Return velocities in words, with the error that is expected in a further test up to there."""
+    slowest, fastest = fitted.speeds
+    inside = number(1e3 * slowest, 2), number(1e3 * fastest, 2)
+    texts = {
+        slowest / RATIO: f"{number(1e3 * slowest / RATIO, 2)} mm/s, half of the slowest test",
+        fastest: f"{' to '.join(dict.fromkeys(inside))} mm/s, the range of the tests",
+        RATIO * fastest: f"{number(1e3 * RATIO * fastest, 2)} mm/s, twice the fastest test",
+    }
+    return [(text, expected_error(fitted.fit, fitted.speeds, speed)) for speed, text in texts.items()]
+
+
+def choice_sentence(fitted: FittedDamper) -> str:
+    """Return the rule of the choice in words, with its tolerance."""
+    tolerance = number(100.0 * math.expm1(fitted.fit.tolerance), 2)
+    return (
+        f"the law with the fewest parameters of {len(fitted.accepted)} whose error left out is within one standard "
+        f"error of the best law ({tolerance} %) and in no test {WORST:g} times as "
+        "large"
+    )
 
 
 def vehicle_lines(fitted: FittedDamper) -> str:
@@ -56,7 +130,7 @@ def vehicle_lines(fitted: FittedDamper) -> str:
         lines.append(f'friction_law = "{law.friction or "coulomb"}"')
         lines.append(_line("coulomb_friction", friction, "N", spread.get("friction", 0.0)))
     if law.friction == "stribeck":
-        lines.append(_line("stribeck_friction", max(at_rest, friction), "N", spread["friction_at_rest"]))
+        lines.append(_line("stribeck_friction", at_rest, "N", spread["friction_at_rest"]))
         lines.append(_line("stribeck_velocity", critical, "m/s", spread["stribeck_velocity"]))
         lines.append(f"stribeck_exponent = {EXPONENT}  # [-] assumed")
     lines += [f"smoothing = {SMOOTHING}  # [s/m] assumed", f"slip_velocity = {SLIP}  # [m/s] assumed"]
@@ -110,6 +184,11 @@ def _curve_lines(fitted: FittedDamper, spread: dict[str, float]) -> list[str]:
     ]
 
 
+def _or_dash(value: float, digits: int) -> str:
+    """Return a number with decimal places, or a dash for an unknown one."""
+    return "-" if math.isnan(value) else f"{value:.{digits}f}"
+
+
 def _short(value: float) -> str:
     """Return a number with five digits, as TOML has it."""
     return repr(rounded(value, 5))
@@ -136,7 +215,7 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             {
                 "path": f"damper.{name}",
                 "value": value,
-                "standard_error": error if math.isfinite(error) else None,
+                "standard_error": _or_none(error),
                 "unit": unit,
             }
             for (name, unit), value, error in zip(
@@ -148,14 +227,31 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             {
                 "file": test.name,
                 "rms_relative": inside,
-                "left_out": outside if math.isfinite(outside) else None,
+                "left_out": _or_none(outside),
                 "whole": whole,
             }
             for test, inside, outside, whole in errors
         ],
+        "candidates": [
+            {"law": each.fit.law.title, "parameters": len(each.fit.law.parameters), "accepted": each.fit.accepted}
+            | {name: _or_none(getattr(each, name)) for name in ("left_out", "slower", "faster", "below", "above")}
+            for each in candidates(fitted)
+        ],
+        "ranges": [
+            {"range": text, "left_out": outside, "fitted": inside} for text, outside, inside in range_rows(fitted)
+        ],
+        "expected": [
+            {"velocity": text, "usual": usual, "nine_of_ten_below": _or_none(limit)}
+            for text, (usual, limit) in expected_rows(fitted)
+        ],
         "not_determined": fitted.left_open(),
         "notices": [f"{test.name}: {text}" for test in fitted.tests for text in test.notices],
     }
+
+
+def _or_none(value: float) -> float | None:
+    """Return a finite number, or None."""
+    return value if math.isfinite(value) else None
 
 
 def tests_text(fits: Sequence[FittedDamper]) -> str:
@@ -175,16 +271,25 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
     """Return the printed summary: laws with their errors on tests left out, tests, parameters, what is left open."""
     fit = fitted.fit
     lines = [caption_of(fitted), *(f"notice: {test.name}: {text}" for test in fitted.tests for text in test.notices)]
-    lines.append(f"{'left out':>9} {'parameters':>10}  law, {len(fitted.compared)} compared")
-    for other in fitted.compared[:SHOWN_LAWS]:
-        lines.append(f"{other.left_out_error:>9.4f} {len(other.parameters):>10}  {other.law.title}")
+    slow, fast = (number(1e3 * speed, 2) for speed in (fitted.speeds[0] / RATIO, RATIO * fitted.speeds[1]))
     lines.append(
-        f"chosen: {fit.law.title}, the simplest law whose error on left-out tests is within one standard "
-        "error of the best"
+        f"{'left out':>9}{'slower':>8}{'faster':>8}{f'at {slow} mm/s':>14}{f'at {fast} mm/s':>14}{'parameters':>11}  "
+        f"law, {len(fitted.compared)} compared"
     )
+    for each in candidates(fitted):
+        errors = "".join(f"{_or_dash(value, 3):>8}" for value in (each.slower, each.faster))
+        forces = "".join(f"{number(force, 3) + ' N':>14}" for force in (each.below, each.above))
+        law = each.fit.law
+        lines.append(f"{each.left_out:>9.4f}{errors}{forces}{len(law.parameters):>11}  {law.title}")
+    lines.append(f"chosen: {fit.law.title}, {choice_sentence(fitted)}")
     lines.append(f"{'RMS error divided by standard deviation of force':<44}{'fitted':>8}{'left out':>10}{'whole':>8}")
     for test, inside, outside, whole in zip(fitted.tests, fit.fitted, fit.left_out, fit.whole, strict=True):
         lines.append(f"{f'{test.name}: {test.caption}':<44}{inside:>8.3f}{outside:>10.3f}{whole:>8.3f}")
+    if rows := range_rows(fitted):
+        lines.append(f"{'error in a range that the fit does not contain':<52}{'fitted':>8}{'left out':>10}")
+        lines += [f"{text:<52}{inside:>8.3f}{outside:>10.3f}" for text, outside, inside in rows]
+    lines.append(f"{'error to expect in a further test with up to':<52}{'usual':>8}{'nine of ten below':>20}")
+    lines += [f"{text:<52}{usual:>8.3f}{_or_dash(limit, 3):>20}" for text, (usual, limit) in expected_rows(fitted)]
     if float(np.max(fit.fitted)) > POOR:
         lines.append(
             f"poor fit: an error is above {POOR:g}; check signs and time shifts of the channels, and look at the "

@@ -12,8 +12,10 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError
 from vehicle.signals.records.choice import Choice
-from vehicle.studies.dampers.damper_fit import DamperFit, choose_law, kind_of, limits_of
+from vehicle.studies.dampers.damper_choice import choose_law
+from vehicle.studies.dampers.damper_fit import DamperFit, kind_of, limits_of
 from vehicle.studies.dampers.damper_law import LINEAR, values_of
+from vehicle.studies.dampers.damper_ranges import speeds_of
 from vehicle.studies.dampers.damper_test import DamperTest, by_conditions, read_test
 from vehicle.studies.dampers.direction import require_direction
 
@@ -22,6 +24,9 @@ SLOW = 0.01
 
 AT_LIMIT = 1.02
 """Ratio to a limit of its range within which a parameter counts as being there."""
+
+ERRORS = 2.0
+"""Standard errors by which a mean force has the wrong sign for gas."""
 
 READING, HALF_OF_LAWS = 0.05, 15.0
 """Share of the progress for the reading of the files, and number of compared laws at half of a fit."""
@@ -56,8 +61,12 @@ class FittedDamper:
     @property
     def speeds(self) -> tuple[float, float]:
         """Highest velocities of the slowest and of the fastest test [m/s]."""
-        speeds = [float(np.max(np.abs(test.velocity))) for test in self.tests]
-        return min(speeds), max(speeds)
+        return speeds_of(self.tests)
+
+    @property
+    def accepted(self) -> list[DamperFit]:
+        """Return the laws within the tolerance of the choice, see `damper_choice`."""
+        return [fit for fit in self.compared if fit.accepted]
 
     @property
     def tested(self) -> dict[str, tuple[float, float]]:
@@ -99,6 +108,12 @@ class FittedDamper:
         sentences.append(f"forces above {fastest:.3g} m/s, the fastest test: the curve continues with its last slope")
         if len(self.tests) == 1:
             sentences.append("other strokes and frequencies: there is a single test")
+        mean_force = -float(fit.values[0])
+        if mean_force > ERRORS * float(fit.errors[0]):
+            sentences.append(
+                f"gas force: the mean force is {mean_force:.3g} N in extension, but gas pushes the rod out: an offset "
+                "of the load cell; the lines have 0 N"
+            )
         low, high = limits_of(law)
         for name, value, lowest, highest, determined in zip(
             law.parameters, fit.parameters, low, high, fit.determined, strict=True

@@ -115,6 +115,10 @@ def template_car(source: Path | str) -> TemplateCar:
     table["hardpoints"] = {name: point for name, point in points.items() if name in users}
     if loads := table.pop("load", None):
         left_out.append(f"its loads {', '.join(loads)}; state your loads as [load.NAME] in the --numbers file")
+    steady = [name for name in ("acceleration", "lateral") if table.get("driving", {}).pop(name, None)]
+    if steady:
+        names = " and ".join(f"driving.{name}" for name in steady)
+        left_out.append(f"its {names}, which would move the loads; set it for each run")
     vehicle = vehicle_of(table, file.parent)
     axles: dict[str, list[PlacedWheel]] = {}
     for wheel in vehicle.composition.wheels:

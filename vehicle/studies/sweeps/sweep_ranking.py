@@ -110,7 +110,7 @@ class RankedCars:
             return []
         if all(len(cars) == 1 for cars in grouped.values()):
             names = ", ".join(path for path in self.paths if path.startswith(STATES))
-            return [f"{names}: load and speed are not design choices, so the cars are not ranked"]
+            return [f"{names}: load, speed and acceleration are not design choices, so the cars are not ranked"]
         chosen = [column for column, path in enumerate(self.paths) if not path.startswith(STATES)]
         sentences = []
         for state, cars in grouped.items():

@@ -1,0 +1,58 @@
+"""The part of a car that computes its periodic states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy.typing as npt
+
+from vehicle.threads import one_blas_thread
+
+if TYPE_CHECKING:
+    from vehicle.runs.car.levels import LevelMap, Plates
+
+
+class SteadyCar:
+    """Base of `Car`: periodic states without a start-up."""
+
+    @one_blas_thread()
+    def levels(
+        self,
+        *,
+        frequency: npt.ArrayLike,
+        level: npt.ArrayLike,
+        plates: Plates = "heave",
+        channels: str | Sequence[str] = "seat rail z",
+        samples: int = 128,
+        progress: Callable[[float], None] | None = None,
+    ) -> LevelMap:
+        """Return the periodic states of the car with all its laws over frequency and level, on sinusoidal plates.
+
+        At each pair of both the first harmonic (FRF), RMS, peak and distortion of the channels, slip and energy of the
+        dampers; the level at which each damper begins to slip, and the damping that is left.
+
+        Args:
+            frequency: frequencies [Hz], ascending; at least 1 Hz for rolling tyres.
+            level: amplitudes of the plates [m], ascending.
+            plates: heave, pitch, roll or warp; a wheel; shares with phases in degrees as "fl=1,fr=1@90"; or a
+                dictionary of complex numbers.
+            channels: names or words of channels that respond to the plates, loads too.
+            samples: samples of a period; a notice names channels that need more.
+            progress: called with the finished fraction.
+
+        Raises:
+            ConfigurationError: a value out of range, an unstable or linear car, or a law without a periodic port:
+                controlled dampers, laws by address, friction by side forces, applied forces.
+        """
+        from vehicle.runs.car.levels import car_levels
+
+        return car_levels(
+            self,
+            plates=plates,
+            frequency=frequency,
+            level=level,
+            channels=channels,
+            samples=samples,
+            progress=progress,
+        )

@@ -1,0 +1,321 @@
+"""Files of the periodic states of a car over frequency and level: tables, pictures and summary."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.arrays import Vector
+from vehicle.digits import aligned, number
+from vehicle.drawing.rendering.level_plot import LevelPicture, peaks_of, plot_level_damping, plot_level_map
+from vehicle.names import channel_words, side_of, wheel_words
+from vehicle.runs.car.levels import MOTIONS, LevelMap
+from vehicle.runs.output.folder import output_folder, write_files, write_json
+from vehicle.signals.formats.csv_table import table_text
+
+DRAWN = 7
+"""Number of levels whose FRFs are drawn."""
+
+AROUND = 1.5
+"""Default band of the peak: its frequency at the lowest level over this, and times this."""
+
+SEVERAL = 2
+"""Number of dampers from which each axle has one line, of the damper that slips first."""
+
+
+@dataclass(frozen=True, slots=False)
+class LevelReport:
+    """Summary of a map: peak and mode of its first channel, and the slip levels of its dampers.
+
+    Attributes:
+        states: the map.
+        plates: motion of the plates by its name or shares.
+        band: band of the peak [Hz]; by default around the peak at the lowest level that falls most.
+    """
+
+    states: LevelMap
+    plates: str
+    band: tuple[float, float] | None = None
+
+    @cached_property
+    def near(self) -> float:
+        """Return the frequency of the peak at the lowest level that falls most up to the highest, in the band [Hz]."""
+        low, high = self.band or (0.0, np.inf)
+        frequency, size = self.states.frequency, np.nan_to_num(np.abs(self.states.frf[0]), nan=1e-30)
+        inside = (frequency >= low) & (frequency <= high)
+        fall = np.where(inside, size[:, 0] / size[:, -1], -1.0)
+        summit = peaks_of(size[:, 0])
+        if chosen := [index for index in summit if inside[index]]:
+            return float(frequency[max(chosen, key=lambda index: float(fall[index]))])
+        return float(frequency[int(np.argmax(np.where(inside, size[:, 0], -1.0)))])
+
+    @property
+    def around(self) -> tuple[float, float]:
+        """Return the band of the peak [Hz]."""
+        return self.band or (self.near / AROUND, self.near * AROUND)
+
+    @cached_property
+    def peaks(self) -> tuple[Vector, Vector]:
+        """Return frequency [Hz] and height of the highest FRF value in the band; NaN at its ends; (l,) each."""
+        inside = (self.states.frequency >= self.around[0]) & (self.states.frequency <= self.around[1])
+        if np.sum(inside) < 3:
+            nothing = np.full(len(self.states.level), np.nan)
+            return nothing, nothing
+        return self.states.peaks(*self.around)
+
+    @cached_property
+    def mode(self) -> tuple[Vector, Vector]:
+        """Return frequency [Hz] and damping ratio of the mode at each level, NaN for a car without this mode."""
+        dampers = self.states.car.vehicle.composition.dampers
+        if any(damper.law.friction_law == "presliding" for damper in dampers) or self.unit != "m/s2":
+            nothing = np.full(len(self.states.level), np.nan)
+            return nothing, nothing
+        return self.states.mode(self.near)
+
+    @property
+    def unit(self) -> str:
+        """Return the unit of the first channel."""
+        return self.states.units[self.states.channels[0]]
+
+    def words(self, damper: str) -> str:
+        """Return a damper by its position: "rear left damper"."""
+        position = side_of(damper.removeprefix("damper_"), self.states.car.vehicle.wheels)
+        return f"{position} damper" if position != damper else damper
+
+    @cached_property
+    def lines(self) -> dict[str, Vector]:
+        """Return the level at which each damper, or the first of an axle, begins to slip [mm]; (f,) each."""
+        slips = 1e3 * self.states.unsticking
+        sliding = {name: line for name, line in zip(self.states.dampers, slips, strict=True) if np.isfinite(line).any()}
+        if len(slips) <= SEVERAL:
+            return {f"{self.words(name)} begins to slip": line for name, line in sliding.items()}
+        axles: dict[str, list[Vector]] = {}
+        for name, line in sliding.items():
+            axles.setdefault(self.words(name).split()[0], []).append(line)
+        return {f"{axle}: the first damper begins to slip": np.fmin.reduce(lines) for axle, lines in axles.items()}
+
+    def first_slip(self) -> dict[str, tuple[float, float]]:
+        """Return the lowest level at which each damper begins to slip [m], and its frequency [Hz], by damper."""
+        slips = {name: line for name, line in zip(self.states.dampers, self.states.unsticking, strict=True)
+                 if np.isfinite(line).any()}  # fmt: skip
+        return {name: (float(np.nanmin(line)), float(self.states.frequency[np.nanargmin(line)]))
+                for name, line in slips.items()}  # fmt: skip
+
+    def damping(self) -> dict[str, Vector]:
+        """Return the damping constant of the same energy of each damper at the frequency of the peak; (l,) each."""
+        return {
+            self.words(name): np.array([np.interp(self.near, self.states.frequency, values) for values in each.T])
+            for name, each in zip(self.states.dampers, self.states.equivalent, strict=True)
+        }
+
+    def picture(self, channel: int) -> LevelPicture:
+        """Return the data of the pictures of a channel."""
+        states, name = self.states, self.states.channels[channel]
+        unit = states.units[name].replace("m/s2", "m/s²")
+        return LevelPicture(
+            frequency=states.frequency,
+            level=1e3 * states.level,
+            size=np.abs(states.frf[channel]),
+            label=f"{channel_words(name)}, first harmonic / plate [({unit})/m]",
+            slipping=self.lines,
+            outside=states.outside,
+        )
+
+    @property
+    def rows(self) -> list[int]:
+        """Return the indices of the drawn levels: the last at which all dampers stick, and higher levels."""
+        lowest = np.nanmin(self.states.unsticking, initial=np.inf)
+        count, first = len(self.states.level), max(0, int(np.searchsorted(self.states.level, lowest)) - 1)
+        first = first if first < count - 1 else 0
+        return sorted({round(index) for index in np.linspace(first, count - 1, min(DRAWN, count)).tolist()})
+
+    def proof(self) -> str:
+        """Return the frequencies at which the state is proven to be the only one, in words."""
+        proven, count = int(np.sum(self.states.unique)), len(self.states.frequency)
+        where = "at all frequencies" if proven == count else f"at {proven} of {count} frequencies"
+        return f"no other periodic state: {f'proven {where}' if proven else 'not proven'}"
+
+    @property
+    def motion(self) -> str:
+        """Return the motion of the plates in words."""
+        wheels = self.states.car.vehicle.wheels
+        if self.plates in MOTIONS:
+            return f"plates in {self.plates}"
+        return f"plate of the {wheel_words(self.plates, wheels)}" if self.plates in wheels else f"plates {self.plates}"
+
+
+def chart_text(states: LevelMap, caption: str) -> str:
+    """Return the table of all points as CSV text; points without a result have empty cells."""
+    heads = ["frequency [Hz]", "level [mm]", "ended"]
+    columns = []
+    for index, name in enumerate(states.channels):
+        unit = states.units[name]
+        heads += [f"{name} FRF [({unit})/m]", f"{name} phase [deg]", f"{name} RMS [{unit}]", f"{name} peak [{unit}]",
+                  f"{name} distortion [%]"]  # fmt: skip
+        columns += [np.abs(states.frf[index]), np.degrees(np.angle(states.frf[index])), states.rms[index],
+                    states.peak[index], 100.0 * states.distortion[index]]  # fmt: skip
+    for index, name in enumerate(states.dampers):
+        heads += [f"{name} slip share [%]", f"{name} energy per cycle [J]", f"{name} damping constant [N s/m]"]
+        columns += [100.0 * states.slip[index], states.energy[index], states.equivalent[index]]
+    rows = [
+        [frequency, 1e3 * level, int(states.ended[at, row]), *(_cell(column[at, row]) for column in columns)]
+        for at, frequency in enumerate(states.frequency.tolist())
+        for row, level in enumerate(states.level.tolist())
+    ]
+    return table_text([heads, *rows], [caption], digits=7)
+
+
+def _cell(value: float) -> float | str:
+    return float(value) if np.isfinite(value) else ""
+
+
+def slip_text(states: LevelMap, caption: str) -> str:
+    """Return the table of the levels at which the dampers begin to slip as CSV text."""
+    heads = ["frequency [Hz]", *(f"{name} slips from [mm]" for name in states.dampers)]
+    rows = [[at, *map(_cell, 1e3 * values)] for at, values in zip(states.frequency.tolist(), states.unsticking.T,
+                                                                  strict=True)]  # fmt: skip
+    return table_text([heads, *rows], [caption], digits=7)
+
+
+def cut_name(frequency: float) -> str:
+    """Return the name of the file of a cut."""
+    return f"cut_{frequency:g}Hz.csv"
+
+
+def summary_of(report: LevelReport, files: Sequence[str]) -> dict[str, Any]:
+    """Return the content of summary.json."""
+    states = report.states
+    (at, height), (natural, ratio) = report.peaks, report.mode
+    return {
+        "car": states.car.vehicle.name,
+        "overrides": list(states.car.overrides),
+        "plates": report.plates,
+        "shares": {name: [share.real, share.imag] for name, share in states.plates.items()},
+        "frequency_hz": states.frequency.tolist(),
+        "level_mm": (1e3 * states.level).tolist(),
+        "channels": list(states.channels),
+        "points": int(states.ended.size),
+        "without_result": int(np.sum(~states.ended)),
+        "iterations": {"mean": float(states.iterations.mean()), "largest": int(states.iterations.max())},
+        "only_one_state_proven": states.unique.tolist(),
+        "first_slip": {
+            name: {"level_mm": 1e3 * level, "frequency_hz": at} for name, (level, at) in report.first_slip().items()
+        },
+        "band_hz": list(report.around),
+        "peak": [
+            {"level_mm": 1e3 * level, "frequency_hz": _number(f), "frf": _number(value), "mode_hz": _number(mode),
+             "damping_ratio": _number(share)}
+            for level, f, value, mode, share in zip(states.level.tolist(), at, height, natural, ratio, strict=True)
+        ],
+        "notices": states.notices,
+        "files": list(files),
+    }  # fmt: skip
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def write_levels(
+    folder: Path,
+    report: LevelReport,
+    cuts: Mapping[float, LevelMap],
+    *,
+    force: bool = False,
+    figures: bool = True,
+    protect: tuple[Path, ...] = (),
+) -> list[str]:
+    """Write chart.csv, slip.csv, the cuts, the pictures and summary.json, all or none; return their names.
+
+    Args:
+        folder: folder of the results.
+        report: the map and what is read from it.
+        cuts: maps at single frequencies [Hz].
+        force: replace the files of an earlier run.
+        figures: write pictures.
+        protect: input files.
+    """
+    states = report.states
+    title = f"{states.car.vehicle.name}, {report.motion}"
+    caption = (
+        f"periodic states, first harmonic; {int(np.sum(states.ended))} of {states.ended.size} points; {report.proof()}"
+    )
+    contents: dict[str, Any] = {
+        "chart.csv": chart_text(states, f"{title}; {caption}"),
+        "slip.csv": slip_text(states, f"{title}; level from which each damper slips, empty outside the levels"),
+        **{cut_name(at): chart_text(cut, f"{title}; {caption}") for at, cut in cuts.items()},
+    }
+    if figures and np.isfinite(states.frf[0]).any():
+        for index, name in enumerate(states.channels):
+            file = "levels.svg" if not index else f"levels_{name}.svg"
+            contents[file] = partial(
+                plot_level_map, data=report.picture(index), rows=report.rows, title=title, caption=caption
+            )
+        if len(states.level) > 1 and len(states.frequency) > 2:
+            contents["damping.svg"] = partial(_draw_damping, report=report, title=title)
+    files = [*contents, "summary.json"]
+    with output_folder(folder, force=force, protect=protect) as work:
+        write_files(work, contents)
+        write_json(work / "summary.json", summary_of(report, files))
+    return files
+
+
+def _draw_damping(path: Path, report: LevelReport, title: str) -> None:
+    """Draw the damping over the level."""
+    matrices = report.states.car.matrices
+    viscous = dict(zip(map(report.words, report.states.dampers), matrices.viscous.tolist(), strict=True))
+    plot_level_damping(
+        path, report.picture(0), band=report.around, peaks=report.peaks, mode=report.mode, damping=report.damping(),
+        viscous=viscous, distortion=report.states.distortion[0], title=title,
+        caption=f"Dampers at {number(report.near)} Hz: viscous ones of the same energy, mean(F v)/mean(v²)",
+    )  # fmt: skip
+
+
+def printed(report: LevelReport, folder: Path | None, files: Sequence[str]) -> str:
+    """Return the printed summary."""
+    states = report.states
+    left = int(np.sum(~states.ended))
+    lines = [
+        f"{states.car.vehicle.name}, {report.motion}; {_range('frequencies', states.frequency, 'Hz')}, "
+        f"{_range('levels', 1e3 * states.level, 'mm')}",
+        f"results: {states.ended.size - left} of {states.ended.size} points, {number(states.iterations.mean(), 2)} "
+        f"iterations each; {report.proof()}",
+    ]
+    for name, (level, at) in report.first_slip().items():
+        lines.append(f"{report.words(name)}: slips first at {number(at)} Hz, from {number(1e3 * level)} mm on")
+    (frequency, height), (natural, ratio) = report.peaks, report.mode
+    heads = ("level [mm]", f"peak [({report.unit})/m]", "at [Hz]", "mode [Hz]", "damping [%]")
+    table = [
+        [number(1e3 * states.level[row]), *(number(_number(value)) for value in
+         (height[row], frequency[row], natural[row], 100.0 * ratio[row]))]
+        for row in report.rows
+    ]  # fmt: skip
+    lines += [f"{channel_words(states.channels[0])}, {number(report.around[0])} to {number(report.around[1])} Hz:"]
+    lines += aligned([heads, *table], left=0)
+    return "\n".join([*lines, *([f"files: {folder}: {', '.join(files)}"] if folder else [])])
+
+
+def _range(name: str, values: Vector, unit: str) -> str:
+    """Return the number and the ends of values, or a single value."""
+    if len(values) == 1:
+        return f"{number(values[0])} {unit}"
+    return f"{len(values)} {name} {number(values[0])} to {number(values[-1])} {unit}"
+
+
+def printed_cut(report: LevelReport, cut: LevelMap) -> str:
+    """Return the printed table of a cut at one frequency."""
+    unit, name = report.unit, cut.channels[0]
+    heads = ["level [mm]", f"FRF [({unit})/m]", f"RMS [{unit}]", f"peak [{unit}]", "distortion [%]",
+             *(f"slip {damper.removeprefix('damper_')} [%]" for damper in cut.dampers)]  # fmt: skip
+    table = [
+        [number(1e3 * cut.level[row]), *(number(_number(value)) for value in (
+            abs(cut.frf[0, 0, row]), cut.rms[0, 0, row], cut.peak[0, 0, row], 100.0 * cut.distortion[0, 0, row],
+            *(100.0 * cut.slip[:, 0, row])))]
+        for row in report.rows
+    ]  # fmt: skip
+    return "\n".join([f"{channel_words(name)} at {cut.frequency[0]:g} Hz:", *aligned([heads, *table], left=0)])
