@@ -8,6 +8,7 @@ from vehicle.signals.excitation.road_settings import SETTINGS
 
 VALUES = {
     "duration": 12.5,
+    "precision": 1.0,
     "rate": 2000.0,
     "seed": 3,
     "period": "record",

@@ -73,7 +73,7 @@ def parser() -> Parser:
     )
     parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
     set_option(parser)
-    file = signal_options(parser)
+    file = signal_options(parser, precision=False)
     setting_options(file, BenchSettings, "first")
     setting_options(parser, BenchSettings, "seconds")
     measure_option(parser, "table of the page")

@@ -25,11 +25,12 @@ CLASS_NEEDS = (
 )
 
 
-def signal_options(parser: Parser, *, several: bool = False) -> argparse._ArgumentGroup:
+def signal_options(parser: Parser, *, several: bool = False, precision: bool = True) -> argparse._ArgumentGroup:
     """Add --input, --road and the options of each; return the group of the options that act on a file of signals.
 
     Args:
         several: --input, --road and --speed may be repeated; then their values are lists.
+        precision: False leaves out --precision.
     """
     action = "append" if several else "store"
     again = ". May be repeated" if several else ""
@@ -76,7 +77,7 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
         # A file of targets names its roads; --rpm runs on a level one.
         return bool(options.road or getattr(options, "rpm", None) or getattr(options, "targets", None))
 
-    road = road_options(parser, drives, is_class, several=several, rate_note=note)
+    road = road_options(parser, drives, is_class, several=several, rate_note=note, precision=precision)
     setting_options(
         road, RoadSettings, "tyre", note="; with --input the tyres stand, except with --set driving.speed=M/S"
     )
@@ -84,7 +85,13 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
 
 
 def road_options(
-    parser: Parser, on_road: Condition, is_class: Condition, *, several: bool = False, rate_note: str = ""
+    parser: Parser,
+    on_road: Condition,
+    is_class: Condition,
+    *,
+    several: bool = False,
+    rate_note: str = "",
+    precision: bool = False,
 ) -> argparse._ArgumentGroup:
     """Add the numeric options of a road, each None by default; return the group of those that act on any road.
 
@@ -93,6 +100,7 @@ def road_options(
         is_class: True if a road is a class of ISO 8608.
         several: --speed may be repeated, once for each road, and --seed; then their values are lists.
         rate_note: addition to the help of --rate, for a command in which it acts on a file of signals too.
+        precision: add --precision.
     """
     group = parser.scoped_group("a road", needs=ROAD_NEEDS, active=on_road)
     group.add_argument(
@@ -108,6 +116,8 @@ def road_options(
     random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
     each = "; repeat it to see the scatter: each road runs with each seed" if several else ""
     setting_options(random, RoadSettings, "seed", note=each, action="append" if several else "store")
+    if precision:
+        setting_options(random, RoadSettings, "precision")
     setting_options(random, RoadSettings, "period")
     setting_options(random, RoadSettings, "coherence")
     setting_options(group, RoadSettings, "patch")

@@ -7,18 +7,23 @@ import numpy as np
 import pytest
 
 from vehicle import Car, load_run, road, sweep
+from vehicle.engines.reduced.twin_run import damping_of_run, twin_run
 from vehicle.runs.car.run import Run
-from vehicle.runs.car.run_twin import signal_period, twin_channels
+from vehicle.runs.car.run_twin import TwinLines, signal_period, twin_lines_of
 from vehicle.runs.figures.chosen_figure import chosen_figure
 from vehicle.runs.figures.run_batch import evaluated
 from vehicle.runs.figures.value import values_of
 from vehicle.runs.output.run_comfort import comfort_values
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.run_input import change_half_width
+from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.comfort_error import STUDENT_95, difference_error
+from vehicle.signals.analysis.comfort_lines import comfort_lines
 from vehicle.signals.analysis.ride_comfort import comfort_columns, waves_of
 
 DURATION = 8.0
+
+RAIL = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")
 
 
 def drive(car: Car, **settings: Any) -> Run:
@@ -118,16 +123,58 @@ def test_a_change_to_a_car_without_a_twin_compares_whole_scatters(car: Car, tmp_
     )
 
 
-def test_the_lead_in_of_the_twin_is_the_end_of_its_period(run: Run):
-    period = signal_period(run.signal)
+@pytest.fixture(scope="module")
+def twin(run: Run) -> tuple[TwinLines, dict[str, np.ndarray]]:
+    """Return the lines of the seat rail of the twin of a run, and its histories over one period."""
+    period, step, car = signal_period(run.signal), run.recording.timestep, run.car
     assert period is not None and period.begin == pytest.approx(run.skip)
-    twin = twin_channels(run.car, period, run.recording.channels, run.recording.timestep, ["seat_rail_acc_z"])
-    history = twin["seat_rail_acc_z"]
-    assert history.size == run.time.size and history[0] == 0.0
-    first, samples = round(run.skip / run.recording.timestep), round(period.length / run.recording.timestep)
-    assert history[1500:first] == pytest.approx(history[1500 + samples : first + samples], abs=1e-12)
-    rail = run["seat rail z"]
-    assert np.std(rail[first:] - history[first:]) < 0.2 * np.std(rail[first:])
+    rows = {name: history[None] for name, history in run.recording.channels.items()}
+    lines = twin_lines_of([car], period, rows, step, RAIL)
+    samples = round(period.length / step)
+    laws = [damper.law for damper in car.vehicle.composition.dampers]
+    damping = damping_of_run(car.poles, laws, run.recording.channels, run.evaluated)
+    assert lines is not None
+    return lines, twin_run(car.poles, damping, period.plates, period.length, RAIL, samples)
+
+
+def test_the_twin_drives_on_the_road_of_the_run(run: Run, twin: tuple[TwinLines, dict[str, np.ndarray]]):
+    rail, history = run["seat rail z"][run.evaluated], twin[1]["seat_rail_acc_z"]
+    assert np.std(rail - history) < 0.2 * np.std(rail)
+
+
+def test_comfort_of_lines_is_that_of_the_record_that_they_make(twin: tuple[TwinLines, dict[str, np.ndarray]]):
+    """Second derivation: periodogram and filter of a record of many periods, of which the last one is evaluated."""
+    lines, histories = twin
+    samples = histories[RAIL[0]].size
+    record = np.stack([np.tile(histories[name], 5) for name in RAIL])
+    record = np.concatenate([record, record[:, :1]], axis=1)[None]
+    step = 1.0 / (lines.frequency[0] * samples)
+    of_record = comfort_columns(step, record, skip=4 * samples * step, axes=True)
+    rail = np.stack([lines.channels[name] for name in RAIL], axis=1)
+    found = comfort_lines(lines.frequency, rail, band=COMFORT_BAND, axes=True)
+    assert {*found} == {name for name in of_record if not name.endswith("_error")}
+    for name, value in found.items():
+        whole = name.partition("_wave")[0]
+        # The filter of the record follows its impulse until it has decayed to 2e-8 (`Weighting.decay_s`).
+        assert value == pytest.approx(of_record[name], rel=1e-7, abs=1e-7 * of_record[whole][0]), name
+
+
+def test_cars_with_shared_poles_have_the_twins_of_single_cars(car: Car, run: Run):
+    """In a batch the responses of a car serve all cars with its poles, each with its own damping constants."""
+    period, step = signal_period(run.signal), run.recording.timestep
+    assert period is not None
+    other = drive(car.with_({"front.damper.coulomb_friction": 90.0}))
+    rows = [each.recording.channels for each in (run, other)]
+    both = {name: np.stack([row[name] for row in rows]) for name in rows[0]}
+    batch = twin_lines_of([run.car, other.car], period, both, step, RAIL)
+    assert batch is not None
+    for number, (each, row) in enumerate(zip((run, other), rows, strict=True)):
+        alone = twin_lines_of([each.car], period, {name: row[name][None] for name in row}, step, RAIL)
+        assert alone is not None
+        for name in RAIL:
+            assert batch.channels[name][number] == pytest.approx(alone.channels[name][0], rel=1e-12)
+    first, second = batch.channels["seat_rail_acc_z"]
+    assert np.max(np.abs(first - second)) > 1e-3 * np.max(np.abs(first))
 
 
 @pytest.mark.parametrize("name", ["weighted", "unweighted:x", "rms:seat rail z:5-25", "tyre_load"])

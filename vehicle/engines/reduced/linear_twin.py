@@ -55,7 +55,11 @@ class LinearTwin:
 
     def responses(self, damping: Vector) -> Complex:
         """Return the responses of the outputs with damping constants c [N s/m], (d,); (k, i, m)."""
-        forces = (damping - self.viscous)[:, None, None] * self.velocities(damping)
+        return self.with_velocities(damping, self.velocities(damping))
+
+    def with_velocities(self, damping: Vector, velocities: Complex) -> Complex:
+        """Return the responses of the outputs with damping constants c and the velocities that belong to them."""
+        forces = (damping - self.viscous)[:, None, None] * velocities
         return np.asarray(self.outputs - np.einsum("kdm,dim->kim", self.outputs_by_force, forces))
 
 
@@ -80,17 +84,27 @@ def linear_twin(
     s = np.asarray(2j * np.pi * np.asarray(frequency), dtype=np.complex128)
     rates = s * plates if rates is None else rates
     outputs = model.outputs(channels) if further is None else model.outputs(channels) + further
-    rows = np.concatenate([outputs.poles, model.slip])
-    # Re(a xi) = (a xi + conj(a xi))/2: a stored pole and its conjugate.
-    by_input = np.zeros((len(rows), plates.shape[1], s.size), dtype=np.complex128)
-    by_force = np.zeros((len(rows), model.force.shape[1], s.size), dtype=np.complex128)
-    pole = (model.poles, 0.5 * rows, model.height, model.velocity, model.force)
-    for poles, half, height, velocity, force in (pole, tuple(np.conj(array) for array in pole)):
-        resolvent = 1.0 / (s - poles[:, None])
-        for number in range(plates.shape[1]):
-            by_input[:, number] += half @ ((height @ plates[:, number] + velocity @ rates[:, number]) * resolvent)
-        by_force += (half[:, None, :] * force.T) @ resolvent
-    count = len(outputs.poles)
+    rows, poles = np.concatenate([outputs.poles, model.slip]), model.poles
+    count, force = len(outputs.poles), model.force
+    # Re(a xi) for a pole s0 = -sigma + i w, its conjugate and the input u: with a u = A + i B,
+    # (A s + A sigma - B w)/((s - s0)(s - s0*)), where A and B are real coefficients times plates.
+    sigma, omega = -poles.real, poles.imag
+    both = 1.0 / ((s - poles[:, None]) * (s - poles[:, None].conj()))
+    residues = np.hstack([model.height, model.velocity])
+    turned = residues * (sigma + 1j * omega)[:, None]
+    real, imaginary = (np.hstack([part(turned), part(residues)]) for part in (np.real, np.imag))
+    parts = np.hstack([rows.real, -rows.imag])
+    by_input = np.empty((len(rows), plates.shape[1], s.size), dtype=np.complex128)
+    for number in range(plates.shape[1]):
+        motion = np.concatenate([np.broadcast_to(plates[:, number], rates[:, number].shape), rates[:, number]])
+        motion = np.concatenate([motion, s * motion])
+        by_pole = np.concatenate([both * _real_product(each, motion) for each in (real, imaginary)])
+        by_input[:, number] = _real_product(parts, by_pole)
+    # A constant input: A and A sigma - B w of each row and damper.
+    of_force = rows[:, None, :] * force.T
+    terms = np.stack([of_force.real, (of_force * (sigma + 1j * omega)).real]).reshape(-1, len(poles))
+    slope, level = _real_product(terms, both).reshape(2, len(rows), force.shape[1], s.size)
+    by_force = s * slope + level
     by_input[:count] += np.tensordot(outputs.height, plates, 1) + np.tensordot(outputs.velocity, rates, 1)
     # The rows of an acceleration return its displacement.
     accelerations = [not channel.startswith("tyre_") for channel in channels]
@@ -104,3 +118,9 @@ def linear_twin(
         outputs_by_force=scale * by_force[:count],
         slip_by_force=by_force[count:],
     )
+
+
+def _real_product(matrix: Vector, lines: Complex | Vector) -> Complex:
+    """Return the product of a real matrix (a, b) and complex lines (b, m) by real numbers; (a, m)."""
+    lines = np.ascontiguousarray(lines, dtype=np.complex128)
+    return np.asarray((matrix @ lines.view(np.float64)).view(np.complex128))

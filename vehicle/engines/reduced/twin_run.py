@@ -6,8 +6,9 @@ on the lines k/T of the period,
 
     Y(f) = sum over plates of H(f, c) Z(f),
 
-exact without time steps. The twin lacks the nonlinear parts of the car: the memory of friction, laws over displacement
-beyond their tangent, and the present tyre load on slopes. It also lacks lines above `HIGHEST`.
+exact without time steps, and its mean squares, weighted or not, are sums over the lines. The twin lacks the nonlinear
+parts of the car: the memory of friction, laws over displacement beyond their tangent, and the present tyre load on
+slopes. It also lacks lines above `HIGHEST`.
 
 Sources: see `vehicle.engines.reduced.equivalent_damping`.
 """
@@ -16,7 +17,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from vehicle.arrays import Vector
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping
 from vehicle.engines.reduced.linear_twin import linear_twin
 from vehicle.engines.reduced.pole_model import PoleModel
@@ -48,6 +49,48 @@ def damping_of_run(model: PoleModel, laws: Sequence[Damper], record: Mapping[str
 
 
 @one_blas_thread()
+def twin_lines(
+    model: PoleModel,
+    dampings: Sequence[Vector],
+    plates: Mapping[str, Vector],
+    period: float,
+    channels: Sequence[str],
+    samples: int,
+) -> tuple[Vector, Complex]:
+    """Return the steady state of twins with the same poles as lines k/T up to `HIGHEST`.
+
+    Args:
+        model: pole model of the cars.
+        dampings: damping constants c of each twin [N s/m]; (d,) each.
+        plates: wheel to displacement over one period [m]; other plates do not move.
+        period: length of the period T [s].
+        channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers.
+        samples: number of samples of a record of one period.
+
+    Returns:
+        Frequency [Hz], (m,), and lines of the twins, |line|^2 = S df; (c, k, m).
+    """
+    names = model.matrices.damper_names
+    outputs = [name for name in channels if name.startswith("tyre_") or "_acc_" in name]
+    count = next(iter(plates.values())).size
+    lines = np.arange(1, min(int(HIGHEST * period), (min(count, samples) - 1) // 2) + 1)
+    spectra = np.zeros((len(model.matrices.system.inputs), 1, lines.size), dtype=np.complex128)  # (w, 1, m)
+    for row, wheel in enumerate(model.matrices.system.inputs):
+        if wheel in plates:
+            spectra[row, 0] = np.fft.rfft(plates[wheel])[lines] * (np.sqrt(2.0) / count)
+    result = np.empty((len(dampings), len(channels), lines.size), dtype=np.complex128)
+    for first in range(0, lines.size, LINES_AT_ONCE):
+        part = slice(first, first + LINES_AT_ONCE)
+        twin = linear_twin(model, outputs, lines[part] / period, spectra[:, :, part])
+        for number, damping in enumerate(dampings):
+            velocity = twin.velocities(damping)
+            rows = dict(zip(outputs, twin.with_velocities(damping, velocity)[:, 0], strict=True))
+            rows |= {f"{name}_velocity": row for name, row in zip(names, velocity[:, 0], strict=True)}
+            rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity[:, 0], strict=True)}
+            result[number, :, part] = [rows[name] for name in channels]
+    return lines / period, result
+
+
 def twin_run(
     model: PoleModel,
     damping: Vector,
@@ -56,35 +99,15 @@ def twin_run(
     channels: Sequence[str],
     samples: int,
 ) -> dict[str, Vector]:
-    """Return the steady state of the twin over one period of the plates.
+    """Return the steady state of the twin over one period of the plates as histories, (n,) each.
 
     Args:
-        model: pole model of the car.
+        model, plates, period, channels: see `twin_lines`.
         damping: damping constants c [N s/m]; (d,).
-        plates: wheel to displacement over one period [m]; other plates do not move.
-        period: length of the period T [s].
-        channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers.
         samples: number of samples n of the result.
-
-    Returns:
-        Histories, (n,) each; a tyre force without the static load.
     """
-    names = model.matrices.damper_names
-    outputs = [name for name in channels if name.startswith("tyre_") or "_acc_" in name]
-    count = next(iter(plates.values())).size
-    lines = np.arange(1, min(int(HIGHEST * period), (min(count, samples) - 1) // 2) + 1)
-    # (w, 1, m), scaled to the samples of the result.
-    spectra = np.zeros((len(model.matrices.system.inputs), 1, lines.size), dtype=np.complex128)
-    for row, wheel in enumerate(model.matrices.system.inputs):
-        if wheel in plates:
-            spectra[row, 0] = np.fft.rfft(plates[wheel])[lines] * (samples / count)
+    lines = twin_lines(model, [damping], plates, period, channels, samples)[1][0]
     whole = np.zeros((len(channels), samples // 2 + 1), dtype=np.complex128)
-    for first in range(0, lines.size, LINES_AT_ONCE):
-        part = slice(first, first + LINES_AT_ONCE)
-        twin = linear_twin(model, outputs, lines[part] / period, spectra[:, :, part])
-        response, velocity = twin.responses(damping)[:, 0], twin.velocities(damping)[:, 0]
-        rows = dict(zip(outputs, response, strict=True))
-        rows |= {f"{name}_velocity": row for name, row in zip(names, velocity, strict=True)}
-        rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity, strict=True)}
-        whole[:, lines[part]] = [rows[name] for name in channels]
+    # A line at k/T and its mirror image.
+    whole[:, 1 : lines.shape[1] + 1] = lines * (samples / np.sqrt(2.0))
     return dict(zip(channels, np.fft.irfft(whole, samples, axis=1), strict=True))

@@ -76,10 +76,14 @@ def _shake(
     source, choice = _with_forces(settings)
     drive: Drive | None = None
     if isinstance(source, DriveInput):
+        from vehicle.runs.car.car import Car
         from vehicle.runs.car.road import road_of
+        from vehicle.runs.car.road_precision import with_duration
 
         road = road_of(source, others=settings.measured.measured is not None)
         drive = evaluated_from(road.under(choice.load(), choice.overrides), settings.skip)
+        if road.precision is not None:
+            drive = with_duration(Car.load(choice.vehicle, choice.overrides), drive)
         file, stem = drive.road, drive.name
         choice = replace(choice, overrides=(*choice.overrides, *drive.overrides))
     else:

@@ -43,6 +43,7 @@ from vehicle.runs.car.origin import Origin
 from vehicle.runs.car.outside_tests import with_range_notice
 from vehicle.runs.car.road import Road
 from vehicle.runs.car.road_estimate import RoadEstimate, road_estimate
+from vehicle.runs.car.road_precision import with_duration
 from vehicle.runs.car.run import Run
 from vehicle.runs.car.simulated_run import simulated_run
 from vehicle.runs.car.steady_car import SteadyCar
@@ -385,10 +386,9 @@ class Car(SteadyCar):
             SimulationError: the run failed.
         """
         if isinstance(source, Road):
-            drive = evaluated_from(source.under(self.vehicle, self.overrides), skip)
-            signal = drive.signal()
-            start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
-            car, named = self._of_drive(tuple(drive.overrides)), replace(signal, source=drive.name)
+            drive = with_duration(self, evaluated_from(source.under(self.vehicle, self.overrides), skip))
+            start = evaluation_start({drive.name: (signal := drive.signal()).duration}, skip, drive.skip)
+            car, named = self._of_drive(drive.overrides), replace(signal, source=drive.name)
             run = car.run(named, engine, progress=progress, channels=channels, skip=start, forces=forces,
                           stated_errors=stated_errors)  # fmt: skip
             return replace(run, road=drive.summary(signal))

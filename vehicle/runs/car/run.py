@@ -23,7 +23,7 @@ from vehicle.handed_down import HANDED
 from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import AXES
-from vehicle.runs.car.run_twin import twin_accelerations
+from vehicle.runs.car.run_twin import twin_comfort
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.motion_response import MotionResponse
@@ -195,14 +195,15 @@ class Run:
         """
         recorded = all(f"seat_acc_{axis}" in self.recording.channels for axis in AXES)
         points = (point, "seat") if point == "seat_rail" and self.car.vehicle.seated and recorded else (point,)
+        band, contact = self.signal.band(COMFORT_BAND), "steering_wheel" if point == RIM else "seat"
         return run_comfort(
             self.recording.timestep,
             *(self.recording.stacked([f"{name}_acc_{axis}" for axis in AXES]) for name in points),
             skip=self.skip,
-            band=self.signal.band(COMFORT_BAND),
+            band=band,
             point=point.replace("_", " "),
-            contact="steering_wheel" if point == RIM else "seat",
-            twin=twin_accelerations(self.car, self.signal, self.recording, self.skip, points),
+            contact=contact,
+            twin=twin_comfort(self.car, self.signal, self.recording, self.skip, points, band=band, contact=contact),
         )
 
     def figure(self, name: str) -> float:

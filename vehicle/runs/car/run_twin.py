@@ -1,4 +1,4 @@
-"""Channels of the linear twin of a finished run, on a road that repeats after the evaluated span.
+"""Lines of the linear twin of a finished run, on a road that repeats after the evaluated span.
 
 The twin (`vehicle.engines.reduced.twin_run`) drives over the same road. The random phases of the road act on both
 alike, so the difference between run and twin gives the error of a value of the run
@@ -11,15 +11,14 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from vehicle.arrays import Vector
+from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.pole_model import PoleModel
-from vehicle.engines.reduced.twin_run import damping_of_run, twin_run
+from vehicle.engines.reduced.twin_run import damping_of_run, twin_lines
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
-from vehicle.signals.excitation.iso_road import RISE_S
-from vehicle.signals.excitation.rest import half_cosine_at
+from vehicle.signals.analysis.comfort_lines import comfort_lines
 from vehicle.signals.excitation.road_drive import SHORTEST_SPAN_S
 from vehicle.signals.excitation.signal import Signal
 
@@ -52,6 +51,19 @@ class Period(NamedTuple):
     plates: Mapping[str, Vector]
     begin: float
     length: float
+
+    def begins_at(self, start: float, timestep: float) -> bool:
+        """Return True if the evaluation of a record starts at the period."""
+        return round(abs(start - self.begin) / timestep) == 0
+
+
+class TwinLines(NamedTuple):
+    """Lines k/T of the twins of r runs in their steady state, where |line|^2 = S df."""
+
+    frequency: Vector
+    """Lines [Hz]; (m,)."""
+    channels: Mapping[str, Complex]
+    """Name to lines; (r, m)."""
 
 
 def last_period(plates: Mapping[str, Vector], timestep: float, length: float | None) -> Period | None:
@@ -90,49 +102,70 @@ def damper_channels(vehicle: Vehicle) -> tuple[str, ...]:
     return tuple(f"{damper.name}_{quantity}" for damper in dampers for quantity in ("velocity", "force"))
 
 
-def twin_channels(
-    car: TwinCar, period: Period, record: Mapping[str, Vector], timestep: float, names: Iterable[str]
-) -> dict[str, Vector]:
-    """Return channels of the twin of a run, with a rise from rest in the lead-in, where the run has it too.
+def twin_lines_of(
+    cars: Sequence[TwinCar], period: Period, channels: Mapping[str, Vector], timestep: float, names: Iterable[str]
+) -> TwinLines | None:
+    """Return lines of the twins of r runs over one period of the road.
 
     Args:
-        car: car of the run.
+        cars: cars of the runs.
         period: period of the road.
-        record: channels of the run.
+        channels: channels of the runs; (r, n).
         timestep: sampling interval of the channels [s].
-        names: names of channels; those that the twin has are returned.
+        names: names of channels; those that a twin has are returned.
 
     Returns:
-        Histories as long as the record; empty without the forces or velocities of all dampers.
+        The lines, 0 for a car without a twin; None if no car has one, or without the forces or velocities of dampers.
     """
-    needed = damper_channels(car.vehicle)
-    if not needed or not {*needed} <= {*record}:
-        return {}
+    needed = [damper_channels(car.vehicle) for car in cars]
     first, samples = round(period.begin / timestep), round(period.length / timestep)
-    laws = [damper.law for damper in car.vehicle.composition.dampers]
-    damping = damping_of_run(car.poles, laws, record, slice(first, first + samples))
-    loads = {f"tyre_{wheel}_force_z": load for wheel, load in car.static.tyre_load.items()}
-    chosen = [name for name in names if name in needed or name in loads or "_acc_" in name]
-    histories = twin_run(car.poles, damping, period.plates, period.length, chosen, samples)
-    # The lead-in is the end of the same period.
-    index = np.arange(len(record[needed[0]])) - first
-    rise = half_cosine_at(np.asarray((index + first) * timestep), RISE_S)
-    return {name: history[index % samples] * rise + loads.get(name, 0.0) for name, history in histories.items()}
+    loads = {f"tyre_{wheel}_force_z" for wheel in cars[0].static.tyre_load}
+    chosen = [name for name in names if name in next(filter(None, needed), ()) or name in loads or "_acc_" in name]
+    by_poles: dict[PoleModel, dict[int, Vector]] = {}
+    for number, (car, recorded) in enumerate(zip(cars, needed, strict=True)):
+        if not recorded or not {*recorded} <= {*channels}:
+            continue
+        model, record = car.poles, {name: channels[name][number] for name in recorded}
+        laws = [damper.law for damper in car.vehicle.composition.dampers]
+        damping = damping_of_run(model, laws, record, slice(first, first + samples))
+        # Cars that differ in friction share their poles.
+        by_poles.setdefault(model, {})[number] = damping
+    lines: Complex = np.empty(0)
+    for model, dampings in by_poles.items():
+        frequency, found = twin_lines(model, [*dampings.values()], period.plates, period.length, chosen, samples)
+        if not lines.size:
+            lines = np.zeros((len(chosen), len(cars), frequency.size), dtype=np.complex128)
+        lines[:, [*dampings]] = np.moveaxis(found, 0, 1)
+    return TwinLines(frequency, dict(zip(chosen, lines, strict=True))) if by_poles else None
 
 
-def twin_accelerations(
-    car: TwinCar, signal: Signal, recording: Recording, begin: float, points: Sequence[str]
-) -> list[Vector] | None:
-    """Return the accelerations of the twin of a run in x, y, z at points, (3, n) each; None without a twin.
+def twin_comfort(
+    car: TwinCar,
+    signal: Signal,
+    recording: Recording,
+    begin: float,
+    points: Sequence[str],
+    *,
+    band: tuple[float, float],
+    contact: str,
+) -> dict[str, Vector] | None:
+    """Return the comfort values of the twin of a run, see `comfort_lines`; None without a twin.
 
     Args:
         car, signal, recording: of the run.
         begin: start of the evaluated span [s].
-        points: output points.
+        points: the seat rail or another output point, then the cushion of a seat.
+        band: band of the unweighted value [Hz].
+        contact: point of contact at the first point.
     """
     period, step = signal_period(signal), recording.timestep
-    if period is None or round(abs(begin - period.begin) / step):
+    if period is None or not period.begins_at(begin, step):
         return None
-    names = [[f"{point}_acc_{axis}" for axis in AXES] for point in points]
-    twin = twin_channels(car, period, recording.channels, step, [name for each in names for name in each])
-    return [np.stack([twin[name] for name in each]) for each in names] if twin else None
+    names = [f"{point}_acc_{axis}" for point in points for axis in AXES]
+    rows = {name: history[None] for name, history in recording.channels.items()}
+    twin = twin_lines_of([car], period, rows, step, names)
+    if twin is None:
+        return None
+    records = np.stack([twin.channels[name] for name in names], axis=1)
+    cushion = records[:, 3:] if len(points) > 1 else None
+    return comfort_lines(twin.frequency, records[:, :3], cushion, band=band, contact=contact, axes=True)

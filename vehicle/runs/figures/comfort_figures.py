@@ -4,10 +4,12 @@ import numpy as np
 
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
+from vehicle.runs.car.run_twin import TwinLines
 from vehicle.runs.figures.figure import Details, Figure, Reduction, Values
 from vehicle.runs.figures.rows import unread
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.comfort_error import wave_error
+from vehicle.signals.analysis.comfort_lines import comfort_lines
 from vehicle.signals.analysis.ride_comfort import (
     ERROR,
     SEAT_PREFIX,
@@ -17,7 +19,7 @@ from vehicle.signals.analysis.ride_comfort import (
     comfort_units,
     waves_of,
 )
-from vehicle.signals.analysis.samples import Vector
+from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.analysis.seat_value import seat_value
 
 POINTS = {"": "seat_rail", SEAT_PREFIX: "seat"}
@@ -38,7 +40,17 @@ def _comfort(point: str, name: str) -> Reduction:
             return Values(columns[column])
         return Values(columns[column], columns[column] * columns[f"{column}{ERROR}"], waves_of(columns, column))
 
-    return Reduction(of=of, page="comfort" if (point, name) == ("seat_rail", WEIGHTED) else "")
+    def lines(_: Complex, details: Details, runs: Runs, twin: TwinLines) -> Complex:
+        columns = _of_twin(point, name, runs, twin)
+        column = f"{name}_{details.axis}" if details.axis else name
+        return waves_of(columns, column)
+
+    return Reduction(of=of, lines=lines, page="comfort" if (point, name) == ("seat_rail", WEIGHTED) else "")
+
+
+def _of_twin(point: str, name: str, runs: Runs, twin: TwinLines) -> dict[str, Vector]:
+    lines = np.stack([twin.channels[f"{point}_acc_{axis}"] for axis in AXES], axis=1)
+    return comfort_lines(twin.frequency, lines, band=runs.band, names=[name], axes=True)
 
 
 def _seat_value(_: Vector, __: Details, runs: Runs) -> Values:
@@ -50,13 +62,23 @@ def _seat_value(_: Vector, __: Details, runs: Runs) -> Values:
     value = np.array(values)
     if not runs.errors:
         return Values(value)
-    # d(a/b)/(a/b) = da/a - db/b: the waves of the ratio.
-    of_points = [runs.comfort(point, WEIGHTED) for point in ("seat", "seat_rail")]
+    waves = value[:, None] * _ratio_waves(*(runs.comfort(point, WEIGHTED) for point in ("seat", "seat_rail")))
+    return Values(value, wave_error(waves), waves)
+
+
+def _ratio_waves(*points: dict[str, Vector]) -> Complex:
+    """Return the waves of the ratio of two weighted values over the ratio: d(a/b)/(a/b) = da/a - db/b."""
     name = f"{WEIGHTED}_z"
     with np.errstate(divide="ignore", invalid="ignore"):
-        cushion, rail = (waves_of(columns, name) / columns[name][:, None] for columns in of_points)
-    waves = value[:, None] * (cushion - rail)
-    return Values(value, wave_error(waves), waves)
+        above, below = (waves_of(columns, name) / columns[name][:, None] for columns in points)
+    return np.asarray(above - below)
+
+
+def _seat_lines(_: Complex, __: Details, runs: Runs, twin: TwinLines) -> Complex:
+    cushion, rail = (_of_twin(point, WEIGHTED, runs, twin) for point in ("seat", "seat_rail"))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value = cushion[f"{WEIGHTED}_z"] / rail[f"{WEIGHTED}_z"]
+    return value[:, None] * _ratio_waves(cushion, rail)
 
 
 def _figure(prefix: str, name: str, meaning: str) -> Figure:
@@ -92,7 +114,7 @@ COMFORT_FIGURES = {
         meaning="weighted RMS of the cushion divided by that of the seat rail, vertical (ISO 10326-1) [-]",
         unit=comfort_units(seated=True)[SEAT_VALUE],
         reads=unread(lambda *_: _channels("seat_rail", "seat")),
-        reduces=Reduction(of=_seat_value),
+        reduces=Reduction(of=_seat_value, lines=_seat_lines),
         of_car="seat",
     ),
 }

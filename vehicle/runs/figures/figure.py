@@ -7,7 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.runs.car.run_twin import TwinLines
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.samples import Complex, Vector
 
@@ -60,6 +63,11 @@ class Details:
     motion: str = ""
 
 
+def _no_lines(_: object, runs: Runs, twin: TwinLines) -> Complex:
+    """Return no lines, for a reduction that reads the twins itself."""
+    return np.empty((len(runs.vehicles), 0, twin.frequency.size), dtype=np.complex128)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Rows:
     """Time histories that a figure reads.
@@ -68,11 +76,13 @@ class Rows:
         channels: names of the recorded channels for details and a car.
         of: histories of r runs from the start of the evaluation on, (r, rows, n).
         page: name of the histories in the page with sliders (`trial_worker.js`); empty for others.
+        lines: the same of the linear twins as lines, (r, rows, m); for reductions that have lines.
     """
 
     channels: Callable[[Details, Vehicle], tuple[str, ...]]
     of: Callable[[Details, Runs], Vector]
     page: str = ""
+    lines: Callable[[Details, Runs, TwinLines], Complex] = _no_lines
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -82,10 +92,12 @@ class Reduction:
     Attributes:
         of: values for histories, details and runs.
         page: name of the reduction in the page with sliders (`trial_worker.js`); empty for others.
+        lines: waves of the linear twins, (r, `WAVES`), from lines (r, rows, m); None for a number without waves.
     """
 
     of: Callable[[Vector, Details, Runs], Values]
     page: str = ""
+    lines: Callable[[Complex, Details, Runs, TwinLines], Complex] | None = None
 
 
 def _accept(*_: object) -> None:

@@ -12,12 +12,13 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import SATURATED_VELOCITY
+from vehicle.runs.car.run_twin import TwinLines
 from vehicle.runs.figures.figure import Details, Reduction, Values
 from vehicle.runs.figures.rows import recorded, velocities, wheels_of
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.comfort_error import overall_error, overall_waves
 from vehicle.signals.analysis.exposure import crest_factor, mtvv, vibration_dose_value
-from vehicle.signals.analysis.samples import Vector
+from vehicle.signals.analysis.samples import Complex, Vector, lines_in_band
 from vehicle.signals.analysis.settled import settling_time
 from vehicle.signals.analysis.slip import first_slips, slip_shares
 from vehicle.signals.analysis.spectra import band_periodogram
@@ -61,6 +62,17 @@ def _rms_of_wheels(rows: Vector, details: Details, runs: Runs) -> Values:
     # The root of the mean over the wheels.
     values = _rms(rows, details, runs, lambda each: np.mean(np.mean(each**2, axis=2), axis=1))
     return values if values.waves is None else values._replace(waves=values.waves / np.sqrt(rows.shape[1]))
+
+
+def _line_waves(lines: Complex, details: Details, _: Runs, twin: TwinLines) -> Complex:
+    """Return the waves of the root of a sum of mean squares of lines."""
+    if details.band:
+        lines = lines[:, :, lines_in_band(twin.frequency, (details.band[0], details.band[1]))]
+    return overall_waves(lines)
+
+
+def _line_waves_of_wheels(lines: Complex, details: Details, runs: Runs, twin: TwinLines) -> Complex:
+    return np.asarray(_line_waves(lines, details, runs, twin) / np.sqrt(lines.shape[1]))
 
 
 def _ratio(rows: Vector, details: Details, runs: Runs) -> Values:
@@ -157,8 +169,8 @@ def _first_slip(_: Vector, details: Details, runs: Runs) -> Values:
     return Values(np.fmin.reduce(each))
 
 
-RMS = Reduction(of=_rms_of_channels, page="rms")
-WHEEL_RMS = Reduction(of=_rms_of_wheels, page="wheel_rms")
+RMS = Reduction(of=_rms_of_channels, page="rms", lines=_line_waves)
+WHEEL_RMS = Reduction(of=_rms_of_wheels, page="wheel_rms", lines=_line_waves_of_wheels)
 RATIO = Reduction(of=_ratio)
 PEAK = Reduction(of=lambda rows, *_: Values(np.abs(rows).max(axis=(1, 2))), page="peak")
 PEAK_TO_PEAK = Reduction(of=lambda rows, *_: Values(np.ptp(rows, axis=2).max(axis=1)), page="peak_to_peak")

@@ -8,10 +8,11 @@ import scipy
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
+from vehicle.runs.car.run_twin import TwinLines
 from vehicle.runs.figures.figure import Details, Rows
 from vehicle.runs.figures.run_batch import Runs
-from vehicle.signals.analysis.samples import Vector
-from vehicle.signals.analysis.weighting import weighted_record
+from vehicle.signals.analysis.samples import Complex, Vector
+from vehicle.signals.analysis.weighting import weighted_record, weighting
 
 SEAT = "seat"
 """Weighting of a seat: Wd along x and y, Wk along z (ISO 2631-1)."""
@@ -108,16 +109,41 @@ def unread(channels: Callable[[Details, Vehicle], tuple[str, ...]]) -> Rows:
     return Rows(channels=channels, of=lambda _, runs: np.empty((len(runs.vehicles), 0, 0)))
 
 
+def _channel_lines(details: Details, _: Runs, twin: TwinLines) -> Complex:
+    """Return the lines of channels, weighted if asked for; (r, channels, m)."""
+    lines = np.stack([twin.channels[name] for name in details.channels], axis=1)
+    if not details.weighting:
+        return lines
+    names = [axis_weighting(details.weighting, name) for name in details.channels]
+    return np.stack([weighting(name).transfer_function(twin.frequency) for name in names]) * lines
+
+
+def _force_lines(details: Details, runs: Runs, twin: TwinLines) -> Complex:
+    """Return the lines of the dynamic tyre loads [N]; (r, wheels, m)."""
+    wheels = wheels_of(details, tuple(runs.tyre_load))
+    return np.stack([twin.channels[f"tyre_{wheel}_force_z"] for wheel in wheels], axis=1)
+
+
+def _variation_lines(details: Details, runs: Runs, twin: TwinLines) -> Complex:
+    """Return the lines of F / F0 - 1 [-]; (r, wheels, m)."""
+    static = np.stack([runs.tyre_load[wheel] for wheel in wheels_of(details, tuple(runs.tyre_load))], axis=1)
+    return np.asarray(_force_lines(details, runs, twin) / static[:, :, None])
+
+
 CHANNELS = Rows(
     channels=lambda details, _: (*details.channels, *details.over),
     of=lambda details, runs: recorded(details.channels, details.weighting, runs),
     page="channels",
+    lines=_channel_lines,
 )
 LOADS = Rows(channels=_force_names, of=_loads, page="loads")
 LOAD_VARIATIONS = Rows(
-    channels=_force_names, of=lambda details, runs: _loads(details, runs) - 1.0, page="load_variations"
+    channels=_force_names,
+    of=lambda details, runs: _loads(details, runs) - 1.0,
+    page="load_variations",
+    lines=_variation_lines,
 )
-LOAD_FORCES = Rows(channels=_force_names, of=_load_forces, page="load_forces")
+LOAD_FORCES = Rows(channels=_force_names, of=_load_forces, page="load_forces", lines=_force_lines)
 VELOCITIES = Rows(
     channels=_velocity_names,
     of=lambda details, runs: velocities(details, runs)[:, :, runs.evaluated],

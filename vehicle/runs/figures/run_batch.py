@@ -10,7 +10,7 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car, Run
-from vehicle.runs.car.run_twin import Period, signal_period, twin_channels
+from vehicle.runs.car.run_twin import Period, TwinLines, signal_period, twin_lines_of
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.ride_comfort import comfort_columns
@@ -46,7 +46,7 @@ class Runs:
     errors: bool = True
     period: Period | None = None
     _comfort: dict[tuple[str, str], dict[str, Vector]] = field(default_factory=dict, init=False)
-    _twins: list[Runs] = field(default_factory=list, init=False)
+    _twins: list[TwinLines | None] = field(default_factory=list, init=False)
 
     def __getitem__(self, channel: str) -> Vector:
         """Return the samples of a channel; (r, n)."""
@@ -76,24 +76,16 @@ class Runs:
         return self.vehicles[0].damped_wheels
 
     @property
-    def twin(self) -> Runs | None:
-        """Return the runs of the linear twins, see `vehicle.runs.car.run_twin`; a car without a twin is at rest.
+    def twin(self) -> TwinLines | None:
+        """Return the lines of the linear twins, see `vehicle.runs.car.run_twin`; a car without a twin is at rest.
 
         None on another road, for another evaluated span, or if no car has a twin. Computed once.
         """
-        if self.period is None or round(abs(self.skip - self.period.begin) / self.timestep) or not self.cars:
+        if self.period is None or not self.cars or not self.period.begins_at(self.skip, self.timestep):
             return None
         if not self._twins:
-            records = [{name: rows[car] for name, rows in self.channels.items()} for car in range(len(self.cars))]
-            twins = [
-                twin_channels(car, self.period, record, self.timestep, self.channels)
-                for car, record in zip(self.cars, records, strict=True)
-            ]
-            at_rest = np.zeros(self.time.size)
-            names = next(filter(None, twins), {})
-            channels = {name: np.stack([twin.get(name, at_rest) for twin in twins]) for name in names}
-            self._twins.append(replace(self, channels=channels, period=None))
-        return self._twins[0] if self._twins[0].channels else None
+            self._twins.append(twin_lines_of(self.cars, self.period, self.channels, self.timestep, self.channels))
+        return self._twins[0]
 
     def comfort(self, point: str, name: str) -> dict[str, Vector]:
         """Return the values of a comfort value and its axes, see `ride_comfort.comfort_columns`; computed once.

@@ -23,20 +23,15 @@ def values_of(chosen: ChosenFigure, runs: Runs) -> Values:
         DataError: the record is too short for the band.
     """
     figure = chosen.figure
-
-    def on(runs: Runs) -> Values:
-        return figure.reduces.of(figure.reads.of(chosen, runs), chosen, runs)
-
-    values = on(runs)
+    values = figure.reduces.of(figure.reads.of(chosen, runs), chosen, runs)
     if not (figure.certain or (runs.random and runs.errors)):
         return Values(values.value)
-    if values.error is None or values.waves is None or (twin := runs.twin) is None:
+    if values.error is None or values.waves is None or (twin := runs.twin) is None or figure.reduces.lines is None:
         return values
     if not {*chosen.channels_of(runs.vehicles[0])} <= {*twin.channels}:
         return values
-    of_twin = on(twin)
-    assert of_twin.waves is not None  # as in the run
-    return Values(values.value, *paired(values.error, values.waves, of_twin.waves))
+    waves = figure.reduces.lines(figure.reads.lines(chosen, runs, twin), chosen, runs, twin)
+    return Values(values.value, *paired(values.error, values.waves, waves))
 
 
 def require_unit(chosen: ChosenFigure, unit: str, units: Mapping[str, str]) -> None:

@@ -7,7 +7,7 @@ chapter 4); `weighted` is the RMS after the weightings of a seat, Wd for x and y
 """
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -187,11 +187,15 @@ def waves_of(columns: Mapping[str, Vector], name: str) -> Complex:
     return np.asarray(np.ascontiguousarray(parts, dtype=np.float64).view(np.complex128))
 
 
+def wave_columns(name: str, waves: Complex) -> dict[str, Vector]:
+    """Return the columns of the waves of a comfort value, (r, `WAVES`)."""
+    # As reals, the complex values alternate real and imaginary parts, in the order of the names.
+    return dict(zip(wave_names(name), waves.view(np.float64).T, strict=True))
+
+
 def _errors(name: str, error: Vector, waves: Complex) -> dict[str, Vector]:
     """Return the columns of the error of a comfort value, (r,), and of its waves, (r, `WAVES`)."""
-    # As reals, the complex values alternate real and imaginary parts, in the order of the names.
-    parts = zip(wave_names(name), waves.view(np.float64).T, strict=True)
-    return {f"{name}{ERROR}": error, **dict(parts)}
+    return {f"{name}{ERROR}": error, **wave_columns(name, waves)}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -284,7 +288,7 @@ def run_comfort(
     band: tuple[float, float],
     point: str = "seat rail",
     contact: str = "seat",
-    twin: Sequence[Vector] | None = None,
+    twin: Mapping[str, Vector] | None = None,
 ) -> RunComfort:
     """Return the comfort of one run; arguments as in `comfort_columns`, with accelerations of (3, n).
 
@@ -294,16 +298,12 @@ def run_comfort(
         cushion: accelerations of the cushion [m/s2], (3, n), or None.
         point: words of the point of `rail`.
         contact: point of contact there, see `comfort_columns`.
-        twin: accelerations of the linear twin at the rail, and on the cushion if given; None without a twin.
+        twin: values of the linear twin by `comfort_lines`; None without a twin.
     """
-
-    def of(rail: Vector, cushion: Vector | None = None) -> dict[str, Vector]:
-        above = None if cushion is None else cushion[None]
-        return comfort_columns(time_step, rail[None], above, skip=skip, band=band, contact=contact, axes=True)
-
-    columns = of(rail, cushion)
+    above = None if cushion is None else cushion[None]
+    columns = comfort_columns(time_step, rail[None], above, skip=skip, band=band, contact=contact, axes=True)
     if twin is not None:
-        columns = with_twins(columns, of(*twin))
+        columns = with_twins(columns, twin)
     errors, explained = (
         {name.removesuffix(suffix): float(column[0]) for name, column in columns.items() if name.endswith(suffix)}
         for suffix in (ERROR, EXPLAINED)

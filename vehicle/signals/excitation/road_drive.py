@@ -69,6 +69,9 @@ class RoadDrive:
         wheels: name of each wheel, its distance d behind the foremost wheel [m], its track.
         track: distance of the two tracks [m].
         duration: length [s]; by default 60 s of a class, a whole profile, or an obstacle and 3 s after it.
+        precision: wanted half of the 95 % interval of the weighted comfort [%], from which
+            `vehicle.runs.car.road_precision` chooses the duration; None with a duration.
+        chosen: message on this choice; empty without one.
         rate: sampling rate [Hz].
         seed: seed of a class.
         period: "evaluated" for a class that repeats after the evaluated span, with phases of the tracks in quadruples;
@@ -89,6 +92,8 @@ class RoadDrive:
     wheels: tuple[tuple[str, float, Side], ...]
     track: float
     duration: float | None = None
+    precision: float | None = None
+    chosen: str = ""
     rate: float = 1000.0
     seed: int = 1
     coherence: float | None = None
@@ -109,8 +114,9 @@ class RoadDrive:
         if isinstance(self.road, Path) or on_obstacle or self.road == LEVEL:
             if self.coherence is not None:
                 raise ConfigurationError("--coherence: works only with a road class; leave it out")
-            if self.period is not None:
-                raise ConfigurationError("--period: works only with a road class; leave it out")
+            for name in ("period", "precision"):
+                if getattr(self, name) is not None:
+                    raise ConfigurationError(f"--{name}: works only with a road class; leave it out")
             if on_obstacle:
                 Obstacle.parse(str(self.road))
         elif self.road not in CLASSES:
@@ -123,7 +129,20 @@ class RoadDrive:
             choices = SETTINGS[name]["option"]["choices"]
             if value is not None and value not in choices:
                 raise ConfigurationError(f"{name} {value!r}: must be one of {', '.join(choices)}")
+        if self.precision is not None:
+            self._require_precision()
         _ = self.envelope
+
+    def _require_precision(self) -> None:
+        """Check that the road is one whose error is known from a short run."""
+        reasons = {
+            "and --duration exclude each other; leave one of them out": self.duration is not None,
+            "needs a road that repeats; leave --period record out, or set --duration": not self.repeats,
+            "is not known with cams, which have no linear twin; set --contact patch, or --duration": self.envelope,
+        }
+        for reason, applies in reasons.items():
+            if applies:
+                raise ConfigurationError(f"--precision {reason}")
 
     @property
     def obstacle(self) -> Obstacle | None:
@@ -198,21 +217,31 @@ class RoadDrive:
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """Messages on a span in which the road rises, or too short for the small scatter of a road that repeats."""
+        """Messages on the choice of the span, on one in which the road rises, and on a short one that scatters."""
+        chosen = (self.chosen,) if self.chosen else ()
         if self.random and self.skip < self._risen:
             return (
+                *chosen,
                 f"{self.name} rises from the plane until {self._risen:.3g} s, but is evaluated from "
                 f"{self.skip:g} s: comfort is too low; choose a later --skip",
             )
         if self.span is None or self.span >= SHORTEST_SPAN_S * (1.0 - 1e-9):
-            return ()
+            return chosen
         return (
             f"{self.span:.3g} s of road {self.name} are evaluated: from {SHORTEST_SPAN_S:g} s on comfort scatters by "
             "less than 1 %; choose a longer --duration",
         )
 
     def signal(self) -> Signal:
-        """Generate the plate signals."""
+        """Generate the plate signals.
+
+        Raises:
+            ConfigurationError: the duration has not been chosen by the precision.
+        """
+        if self.precision is not None:
+            raise ConfigurationError(
+                "--precision: works in shaker, sweep and optimise and in Car.run; set a duration here"
+            )
         if self.road == LEVEL:
             return self._level(USUAL_DURATION if self.duration is None else self.duration)
         road, duration = self._road()
@@ -309,7 +338,7 @@ class RoadDrive:
     def identity(self) -> dict[str, object]:
         """Return all data that determine the signal: parameters, and the digest of a measured profile."""
         identity = asdict(self) | {"road": str(self.road)}
-        for name in ("tagged", "contact", "radius", "lifting", "period", "start"):
+        for name in ("tagged", "contact", "radius", "lifting", "period", "start", "precision", "chosen"):
             del identity[name]
         if self.span is not None:
             identity["repeats_after"] = self.span

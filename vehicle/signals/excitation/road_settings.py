@@ -15,6 +15,13 @@ class RoadSettings(Settings):
     duration: float | None = setting(
         "length of the drive [s]; default: 60, or the whole profile", within="(0, inf)", type=float, metavar="S"
     )
+    precision: float | None = setting(
+        "half of the 95-percent interval of the weighted comfort, in percent, for which pilot runs with the reduced "
+        "engine choose the length of the drive, in place of its duration: 6 to 600 s are evaluated",
+        within="(0, 100)",
+        type=float,
+        metavar="P",
+    )
     rate: float | None = setting(
         "sampling rate of the plate signals [Hz]; default: 1000", within="(0, inf)", type=float, metavar="HZ"
     )

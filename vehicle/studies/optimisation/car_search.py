@@ -128,7 +128,7 @@ def plan_search(
     """Check the arguments of a search and return the search; arguments and errors as in `optimise`."""
     pymoo("core.problem")
     vehicle, file = car.vehicle, file_of(car)
-    sources = inputs_of(car, inputs)
+    sources = inputs_of(car, inputs, settings.skip)
     names = [source.name for source in sources]
     if len(set(names)) < len(names):
         raise ConfigurationError(f"inputs {', '.join(names)}: equal names; rename a file, or use each input once")

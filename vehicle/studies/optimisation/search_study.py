@@ -49,13 +49,16 @@ class SearchStudy:
         Args:
             command: command line of the study, for its files.
             begin: shows the progress.
-            note: called with a message on the size of a search for targets.
+            note: called with messages on durations chosen for a precision, and on the size of a search for targets.
 
         Raises:
             VehicleError: as in `optimise`; a folder that cannot be written.
         """
         car = Car.load(self.car.vehicle, self.car.overrides)
         plan = plan_search(car, self.vary, self.inputs, self.minimise, self.settings)
+        for chosen in dict.fromkeys(getattr(source, "chosen", "") for source in plan.trials.inputs):
+            if chosen:
+                note(chosen)
         beside = None if self.beside is None else read_other_front(self.beside, plan.trials.problem)
         to = self.destination
         output = to.study_folder(OUTPUT, rows=ROWS)

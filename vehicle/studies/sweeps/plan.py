@@ -168,7 +168,11 @@ def plan_sweep(
     vehicle = file_of(car)
     each = _one_of_each_path(changes)
     require_paths(vehicle, car.overrides, each)
-    sources = inputs_of(car, inputs)
+    sources = inputs_of(car, inputs, settings.skip)
+    if settings.estimate and any(getattr(source, "chosen", "") for source in sources):
+        raise ConfigurationError(
+            "--precision: chooses the length of runs, and --estimate runs nothing; leave one of them out"
+        )
     if any(text.partition("=")[0].strip().endswith("speed") for text in each):
         require_speed_of_roads(sources, changes)
     start = common_start(sources, settings.skip)

@@ -11,12 +11,13 @@ from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.names import CORNERS
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road, road_of
+from vehicle.runs.car.road_precision import with_duration
 from vehicle.settings import Settings, part
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.input_settings import DriveInput, on_road
 from vehicle.signals.excitation.recorded_road import RecordedDrive
-from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.road_drive import RoadDrive, evaluated_from
 from vehicle.signals.excitation.road_settings import RoadSettings
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Input, SignalFile, signal_of
@@ -76,12 +77,13 @@ Inputs = InputChoice | Source | Sequence[Source]
 """One or several inputs."""
 
 
-def inputs_of(car: Car, sources: Inputs) -> list[Input]:
+def inputs_of(car: Car, sources: Inputs, skip: float | None = None) -> list[Input]:
     """Return the inputs of the runs of a car.
 
     Args:
         car: the car, with the positions of its wheels on a road.
         sources: one or several sources.
+        skip: requested start of the evaluation [s]; by default see `common_start`.
 
     Returns:
         Inputs in the order of the sources; the name of a road contains the seed if the road appears with several seeds.
@@ -106,7 +108,10 @@ def inputs_of(car: Car, sources: Inputs) -> list[Input]:
                 f"{entry.name}: contains vibration only up to {highest:g} Hz; comfort in 2 to 50 Hz needs a record of "
                 "at least 125 Hz. `python -m vehicle shaker` accepts it: its results end at that frequency"
             )
-    return [_tagged(entry, inputs) for entry in inputs]
+    # The car chooses the durations for a precision; all its variants drive them.
+    start = max(_starts(inputs), default=0.0) if skip is None else skip
+    tagged = [_tagged(entry, inputs) for entry in inputs]
+    return [with_duration(car, evaluated_from(entry, start)) if _is_precise(entry) else entry for entry in tagged]
 
 
 def require_speed_of_roads(inputs: Sequence[Input], changes: Iterable[Sequence[str]]) -> None:
@@ -142,9 +147,18 @@ def common_start(inputs: Sequence[Input], skip: float | None) -> float:
         ConfigurationError: the start is negative, not finite, or not before the end of every input.
         DataError: an input cannot be read.
     """
-    defaults = [float(start) for source in inputs if (start := getattr(source, "skip", None)) is not None]
     durations = {source.name: signal_of(source).duration for source in inputs}
-    return evaluation_start(durations, skip, max(defaults, default=0.0))
+    return evaluation_start(durations, skip, max(_starts(inputs), default=0.0))
+
+
+def _starts(inputs: Sequence[Input]) -> list[float]:
+    """Return the default starts of the roads [s]."""
+    return [float(start) for source in inputs if (start := getattr(source, "skip", None)) is not None]
+
+
+def _is_precise(source: Input) -> bool:
+    """Return True for a road whose duration follows from a precision."""
+    return getattr(source, "precision", None) is not None
 
 
 def file_of(car: Car) -> Path | None:
