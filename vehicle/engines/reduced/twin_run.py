@@ -52,7 +52,7 @@ def damping_of_run(model: PoleModel, laws: Sequence[Damper], record: Mapping[str
 def twin_lines(
     model: PoleModel,
     dampings: Sequence[Vector],
-    plates: Mapping[str, Vector],
+    roads: Sequence[Mapping[str, Vector]],
     period: float,
     channels: Sequence[str],
     samples: int,
@@ -62,32 +62,33 @@ def twin_lines(
     Args:
         model: pole model of the cars.
         dampings: damping constants c of each twin [N s/m]; (d,) each.
-        plates: wheel to displacement over one period [m]; other plates do not move.
+        roads: for each of i roads, wheel to displacement of its plate over one period [m]; other plates do not move.
         period: length of the period T [s].
         channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers.
         samples: number of samples of a record of one period.
 
     Returns:
-        Frequency [Hz], (m,), and lines of the twins, |line|^2 = S df; (c, k, m).
+        Frequency [Hz], (m,), and lines of the twins, |line|^2 = S df; (c, i, k, m).
     """
     names = model.matrices.damper_names
     outputs = [name for name in channels if name.startswith("tyre_") or "_acc_" in name]
-    count = next(iter(plates.values())).size
+    count = next(iter(roads[0].values())).size
     lines = np.arange(1, min(int(HIGHEST * period), (min(count, samples) - 1) // 2) + 1)
-    spectra = np.zeros((len(model.matrices.system.inputs), 1, lines.size), dtype=np.complex128)  # (w, 1, m)
+    spectra = np.zeros((len(model.matrices.system.inputs), len(roads), lines.size), dtype=np.complex128)  # (w, i, m)
     for row, wheel in enumerate(model.matrices.system.inputs):
-        if wheel in plates:
-            spectra[row, 0] = np.fft.rfft(plates[wheel])[lines] * (np.sqrt(2.0) / count)
-    result = np.empty((len(dampings), len(channels), lines.size), dtype=np.complex128)
+        for road, plates in enumerate(roads):
+            if wheel in plates:
+                spectra[row, road] = np.fft.rfft(plates[wheel])[lines] * (np.sqrt(2.0) / count)
+    result = np.empty((len(dampings), len(roads), len(channels), lines.size), dtype=np.complex128)
     for first in range(0, lines.size, LINES_AT_ONCE):
         part = slice(first, first + LINES_AT_ONCE)
         twin = linear_twin(model, outputs, lines[part] / period, spectra[:, :, part])
         for number, damping in enumerate(dampings):
             velocity = twin.velocities(damping)
-            rows = dict(zip(outputs, twin.with_velocities(damping, velocity)[:, 0], strict=True))
-            rows |= {f"{name}_velocity": row for name, row in zip(names, velocity[:, 0], strict=True)}
-            rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity[:, 0], strict=True)}
-            result[number, :, part] = [rows[name] for name in channels]
+            rows = dict(zip(outputs, twin.with_velocities(damping, velocity), strict=True))
+            rows |= {f"{name}_velocity": row for name, row in zip(names, velocity, strict=True)}
+            rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity, strict=True)}
+            result[number, :, :, part] = np.stack([rows[name] for name in channels], axis=1)
     return lines / period, result
 
 
@@ -102,11 +103,12 @@ def twin_run(
     """Return the steady state of the twin over one period of the plates as histories, (n,) each.
 
     Args:
-        model, plates, period, channels: see `twin_lines`.
+        model, period, channels: see `twin_lines`.
+        plates: wheel to displacement over one period [m].
         damping: damping constants c [N s/m]; (d,).
         samples: number of samples n of the result.
     """
-    lines = twin_lines(model, [damping], plates, period, channels, samples)[1][0]
+    lines = twin_lines(model, [damping], [plates], period, channels, samples)[1][0, 0]
     whole = np.zeros((len(channels), samples // 2 + 1), dtype=np.complex128)
     # A line at k/T and its mirror image.
     whole[:, 1 : lines.shape[1] + 1] = lines * (samples / np.sqrt(2.0))

@@ -17,8 +17,9 @@ from vehicle.engines.reduced.twin_run import damping_of_run, twin_lines
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.model.parameters.vehicle import Vehicle
-from vehicle.names import AXES
+from vehicle.names import AXES, across
 from vehicle.signals.analysis.comfort_lines import comfort_lines
+from vehicle.signals.analysis.ride_comfort import PHASE
 from vehicle.signals.excitation.road_drive import SHORTEST_SPAN_S
 from vehicle.signals.excitation.signal import Signal
 
@@ -64,6 +65,29 @@ class TwinLines(NamedTuple):
     """Lines [Hz]; (m,)."""
     channels: Mapping[str, Complex]
     """Name to lines; (r, m)."""
+    mirrored: Mapping[str, Complex]
+    """The same with left and right track exchanged; empty on one track."""
+
+    def comfort(
+        self, points: Sequence[str], *, band: tuple[float, float], contact: str = "seat", axes: bool = False
+    ) -> dict[str, Vector]:
+        """Return the comfort values of the twins, see `comfort_lines`, and their `PHASE`.
+
+        On the lines of a road, mean and difference of the tracks make the parts Y_M and Y_D of a vibration, so that
+        W^2 = sum |Y_M|^2 + |Y_D|^2 +- 2 Re(Y_M^H Y_D), with - on the mirrored road. The first two terms are the mean
+        over the phases of the road, the last one is what a single road adds: half of the difference of both roads.
+
+        Args:
+            points: the seat rail or another output point, then the cushion of a seat.
+            band, contact, axes: see `comfort_lines`.
+        """
+        of_roads = []
+        for channels in (self.channels, self.mirrored) if self.mirrored else (self.channels,):
+            lines = [np.stack([channels[f"{point}_acc_{axis}"] for axis in AXES], axis=1) for point in points]
+            of_roads.append(comfort_lines(self.frequency, *lines, band=band, contact=contact, axes=axes))
+        values, mirrored = of_roads[0], of_roads[-1]
+        phases = {f"{name}{PHASE}": 0.5 * (values[name] - mirrored[name]) for name in values if "_wave_" not in name}
+        return values | phases
 
 
 def last_period(plates: Mapping[str, Vector], timestep: float, length: float | None) -> Period | None:
@@ -121,6 +145,9 @@ def twin_lines_of(
     first, samples = round(period.begin / timestep), round(period.length / timestep)
     loads = {f"tyre_{wheel}_force_z" for wheel in cars[0].static.tyre_load}
     chosen = [name for name in names if name in next(filter(None, needed), ()) or name in loads or "_acc_" in name]
+    other_side = {wheel: period.plates.get(across(wheel)) for wheel in period.plates}
+    mirrored = {wheel: plate for wheel, plate in other_side.items() if plate is not None}
+    roads = [period.plates, mirrored] if len(mirrored) == len(period.plates) else [period.plates]
     by_poles: dict[PoleModel, dict[int, Vector]] = {}
     for number, (car, recorded) in enumerate(zip(cars, needed, strict=True)):
         if not recorded or not {*recorded} <= {*channels}:
@@ -132,11 +159,14 @@ def twin_lines_of(
         by_poles.setdefault(model, {})[number] = damping
     lines: Complex = np.empty(0)
     for model, dampings in by_poles.items():
-        frequency, found = twin_lines(model, [*dampings.values()], period.plates, period.length, chosen, samples)
+        frequency, found = twin_lines(model, [*dampings.values()], roads, period.length, chosen, samples)
         if not lines.size:
-            lines = np.zeros((len(chosen), len(cars), frequency.size), dtype=np.complex128)
-        lines[:, [*dampings]] = np.moveaxis(found, 0, 1)
-    return TwinLines(frequency, dict(zip(chosen, lines, strict=True))) if by_poles else None
+            lines = np.zeros((len(roads), len(chosen), len(cars), frequency.size), dtype=np.complex128)
+        lines[:, :, [*dampings]] = np.moveaxis(found, 0, 2)
+    if not by_poles:
+        return None
+    channels_of, *of_mirrored = (dict(zip(chosen, of_road, strict=True)) for of_road in lines)
+    return TwinLines(frequency, channels_of, next(iter(of_mirrored), {}))
 
 
 def twin_comfort(
@@ -149,7 +179,7 @@ def twin_comfort(
     band: tuple[float, float],
     contact: str,
 ) -> dict[str, Vector] | None:
-    """Return the comfort values of the twin of a run, see `comfort_lines`; None without a twin.
+    """Return the comfort values of the twin of a run, see `TwinLines.comfort`; None without a twin.
 
     Args:
         car, signal, recording: of the run.
@@ -166,6 +196,4 @@ def twin_comfort(
     twin = twin_lines_of([car], period, rows, step, names)
     if twin is None:
         return None
-    records = np.stack([twin.channels[name] for name in names], axis=1)
-    cushion = records[:, 3:] if len(points) > 1 else None
-    return comfort_lines(twin.frequency, records[:, :3], cushion, band=band, contact=contact, axes=True)
+    return twin.comfort(points, band=band, contact=contact, axes=True)

@@ -35,6 +35,9 @@ ISO_2631 = "ISO 2631-1"
 ERROR = "_error"
 """Suffix of the relative standard error of `unweighted` or `weighted`, see `vehicle.signals.analysis.comfort_error`."""
 
+PHASE = "_phase"
+"""Suffix of what the phases of one road add to a value of the linear twin, see `vehicle.runs.car.run_twin`."""
+
 EXPLAINED = "_explained"
 """Suffix of the share of the scatter that the linear twin explains, see `vehicle.signals.analysis.comfort_error`."""
 
@@ -169,14 +172,15 @@ def with_twins(columns: Mapping[str, Vector], twins: Mapping[str, Vector]) -> di
 
     Args:
         columns: values of `comfort_columns`.
-        twins: values of the twins.
+        twins: values of the twins, with the `PHASE` on this road.
     """
     result = dict(columns)
     for name in (column.removesuffix(ERROR) for column in columns if column.endswith(ERROR)):
         value, error = columns[name], columns[f"{name}{ERROR}"]
         waves, of_twins = (waves_of(each, name) for each in (columns, twins))
         pair = paired(error * value, waves, of_twins)
-        relative = np.divide(pair.error, value, out=np.zeros_like(value), where=value > 0.0)
+        total = np.hypot(pair.error, twins.get(f"{name}{PHASE}", 0.0))
+        relative = np.divide(total, value, out=np.zeros_like(value), where=value > 0.0)
         result |= _errors(name, relative, pair.waves) | {f"{name}{EXPLAINED}": pair.explained}
     return result
 

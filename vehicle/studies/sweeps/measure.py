@@ -16,13 +16,11 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES, CORNERS
 from vehicle.runs.car import Run
-from vehicle.runs.car.run_twin import TwinLines
 from vehicle.runs.figures.chosen_figure import ChosenFigure, chosen_figure
 from vehicle.runs.figures.run_batch import Runs, single
 from vehicle.runs.figures.turning_figures import ORDER_FREQUENCY
 from vehicle.runs.figures.value import values_of
 from vehicle.signals.analysis.comfort import COMFORT_BAND
-from vehicle.signals.analysis.comfort_lines import comfort_lines
 from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfort_units, wave_names, with_twins
 from vehicle.studies.sweeps.function_measure import FunctionMeasure, NamedFunctions, RunFunction
 
@@ -244,7 +242,8 @@ class ComfortMeasure:
             none = np.full(len(runs.vehicles), np.nan)
             numbers |= dict.fromkeys((name for name in numbers if "_error" in name or "_wave_" in name), none)
         elif (twin := runs.twin) is not None:
-            paired = with_twins(numbers, self._of_twins(twin))
+            points = ["seat_rail", *(["seat"] if self.seat else [])]
+            paired = with_twins(numbers, twin.comfort(points, band=COMFORT_BAND))
             numbers = {name: paired[name] for name in numbers}
         runs = replace(runs, errors=False)
         return numbers | {slip.column: values_of(slip, runs).value for slip in self._slips}
@@ -254,12 +253,6 @@ class ComfortMeasure:
         rail = runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))
         cushion = runs.stacked(*(f"seat_acc_{axis}" for axis in AXES)) if self.seat else None
         return comfort_columns(runs.timestep, rail, cushion, skip=runs.skip)
-
-    def _of_twins(self, twin: TwinLines) -> dict[str, Vector]:
-        """Return the comfort values of the linear twins."""
-        points = ["seat_rail", *(["seat"] if self.seat else [])]
-        lines = [np.stack([twin.channels[f"{point}_acc_{axis}"] for axis in AXES], axis=1) for point in points]
-        return comfort_lines(twin.frequency, *lines, band=COMFORT_BAND)
 
 
 def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:
