@@ -130,7 +130,7 @@ def twin_lines_of(
         damping = damping_of_run(model, laws, record, slice(first, first + samples))
         # Cars that differ in friction share their poles.
         by_poles.setdefault(model, {})[number] = damping
-    lines: Complex = np.empty(0)
+    lines: Complex = np.empty(0, dtype=np.complex128)
     for model, dampings in by_poles.items():
         frequency, found = twin_lines(model, [*dampings.values()], period.plates, period.length, chosen, samples)
         if not lines.size:
