@@ -58,7 +58,7 @@ def values_of(known):
     """The parameters of a known damper by the names of the fit; eye and machine are in series."""
     values = {"gas_force": known.get("gas_force", 0.0), "gas_stiffness": known.get("gas_stiffness")}
     values |= {
-        "series_stiffness": 1.0 / (1.0 / MACHINE + 1.0 / known.get("eye", np.inf)),
+        "series_stiffness": 1.0 / (1.0 / known.get("machine", MACHINE) + 1.0 / known.get("eye", np.inf)),
         "friction": known.get("coulomb"),
     }
     if "stribeck" in known:

@@ -20,7 +20,7 @@ from vehicle.studies.dampers.damper_choice import (
 from vehicle.studies.dampers.damper_fit import DamperFit, finished, fit_law, squares_of
 from vehicle.studies.dampers.damper_force import Motion, force_and_slopes, steady_force
 from vehicle.studies.dampers.damper_law import DamperLaw
-from vehicle.studies.dampers.damper_ranges import expected_error, range_errors, speeds_of
+from vehicle.studies.dampers.damper_ranges import bend_probability, expected_error, range_errors, speeds_of
 from vehicle.studies.dampers.damper_test import read_test
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
@@ -102,6 +102,29 @@ def test_a_bend_beyond_the_tests_is_in_the_limit():
     assert np.mean(errors < most) == pytest.approx(0.9, abs=0.015)
     assert usual == pytest.approx(np.sqrt(np.mean(errors**2)), rel=0.08)
     assert expected_error(made([0.1] * 3, ranges=ranges), (0.1, 0.4), 0.4).usual == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("bends", "octaves"), [(0, 2), (2, 3)])
+def test_the_probability_of_a_bend_is_the_share_among_dampers_with_the_same_bends(bends, octaves):
+    """Dampers of unknown proneness to bends; those with this many bends in the tested octaves have the next one."""
+    rng = np.random.default_rng(3)
+    # A trial is a bend with the probability of its damper, or the end of an octave.
+    trials = rng.random((200_000, bends + octaves + 1)) < rng.random((200_000, 1))
+    same = (np.sum(trials[:, :-1], axis=1) == bends) & ~trials[:, -2]
+    assert np.mean(trials[same, -1]) == pytest.approx(bend_probability(bends, octaves, 1.0), abs=0.01)
+    chance = bend_probability(bends, octaves, 1.0)
+    assert bend_probability(bends, octaves, 2.0) == pytest.approx(1.0 - (1.0 - chance) ** 2)
+
+
+def test_an_error_of_fewer_tests_gives_a_larger_limit():
+    """Only two of four tests have samples in the range: the limit is exceeded by one of ten further forces."""
+    rng = np.random.default_rng(4)
+    below = 0
+    for _ in range(DRAWS):
+        steps = rng.standard_normal(3)
+        ranges = {"slower": np.array([[*np.abs(steps[:2]), np.nan, np.nan], [0.0, 0.0, np.nan, np.nan]])}
+        below += abs(steps[2]) < expected_error(made([1e-6] * 4, ranges=ranges), (0.1, 0.4), 0.05).limit
+    assert below / DRAWS == pytest.approx(0.9, abs=3.0 * 0.3 / np.sqrt(DRAWS))
 
 
 def test_the_steady_force_is_that_of_a_long_stroke():

@@ -58,6 +58,19 @@ def test_the_derivatives_are_those_of_differences(law):
         assert np.mean(close) > 0.995, name
 
 
+@pytest.mark.parametrize("series", [False, True])
+@pytest.mark.parametrize("excess", [30.0, -30.0])
+def test_stribeck_friction_at_constant_velocity_is_its_formula(series, excess):
+    """F = c v +- (F_c + (F_s - F_c) exp(-(v/v_s)^2)) in both directions, also with friction at rest below sliding."""
+    law = DamperLaw(friction="stribeck", series=series)
+    parameters = np.array([0.0, 1500.0, 60.0, excess, 0.02, *([2e6] if series else [])])
+    for speed in (-0.05, -0.015, 0.005, 0.02, 0.1):
+        time = np.arange(400) * 1e-3
+        force, _ = force_and_slopes(law, parameters, Motion(time, speed * time, np.full(time.size, speed), 0.0))
+        friction = 60.0 + excess * np.exp(-((speed / 0.02) ** 2))
+        assert force[-1] == pytest.approx(1500.0 * speed + np.sign(speed) * friction, rel=1e-6)
+
+
 def test_a_linear_damper_behind_a_spring_is_a_maxwell_element():
     # The backward difference has a relative error of (w h)^2/3, 3.3e-4, in the rate of the deflection.
     damping, stiffness, w = 4000.0, 8e5, 2.0 * np.pi * 5.0

@@ -9,11 +9,15 @@ best, and which is on no test worse than the best by more than `WORST` and one s
 The standard error describes the error of the best law itself. Tests are chosen by the engineer, not drawn at random:
 the error is a mean over strata (Cochran, Sampling Techniques, 5.3). In each of the n tests, the mean square varies
 between its B blocks, and by the errors s of the force that the other tests leave in the parameters, common to all
-blocks,
+blocks. With d ln e = d mean(e^2)/(2 mean(e^2)),
 
     SE^2 = 1/n^2 sum over tests of (var(e^2)/B + 2 s^4)/(4 mean(e^2)^2),   s^2 = mean of x' cov x <= e^2,   x = dF/dp.
 
-The spread between tests does not count: one test is harder than another for all laws alike.
+The mean square of x' dp for normal errors dp of the parameters has the variance 2 tr((A cov)^2), A = mean of x x'. It
+is at most 2 tr(A cov)^2 = 2 s^4, and equal if one combination of the parameters dominates: SE is an upper estimate. The
+spread between tests does not count: one test is harder than another for all laws alike. The fits without a test share
+most of their data; the correlation of their errors between tests is neglected, and has no unbiased estimate (Bengio and
+Grandvalet, J. Machine Learning Research 5, 2004).
 
 Sources: leave-one-out and the rule of one standard error: Hastie, Tibshirani, Friedman, The Elements of Statistical
 Learning, 7.10.

@@ -180,7 +180,7 @@ def _curve_force(values: DamperValues, velocity: Vector, step_width: float) -> V
     segment = np.searchsorted(knots, velocity)
     force = np.array(slopes)[segment] * velocity + np.array(offsets)[segment]
     sliding, at_rest, critical = values.friction
-    if at_rest > sliding:
+    if at_rest != sliding:
         force -= np.sign(velocity) * (at_rest - sliding) * -np.expm1(-((np.abs(velocity) / critical) ** EXPONENT))
     return np.asarray(force)
 

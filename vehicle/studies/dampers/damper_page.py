@@ -18,6 +18,8 @@ from vehicle.studies.dampers.damper_text import (
     caption_of,
     choice_sentence,
     expected_rows,
+    next_test,
+    notice_lines,
     range_rows,
     vehicle_lines,
 )
@@ -105,6 +107,7 @@ def _law(fitted: FittedDamper) -> Markup:
         expected=expected,
         band=drawing(band, "Force over velocity with its band"),
         left_open=fitted.left_open(),
-        noted=[f"{test.name}: {text}" for test in fitted.tests for text in test.notices],
+        next_test=next_test(fitted),
+        noted=notice_lines(fitted),
         lines=vehicle_lines(fitted),
     )

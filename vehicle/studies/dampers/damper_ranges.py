@@ -11,14 +11,15 @@ squared error is
 
     e^2 = e_in^2 + tau^2 ln(r)/ln(2);    in nine of ten tests at most   e_in,90^2 + F_90(1, n) tau^2 ln(r)/ln(2).
 
-F_90 is the quantile of the F distribution: one unknown force, its variance estimated from n tests. Every test contains
-slower samples, because its velocity passes zero, but no test contains faster ones. Above the fastest test the curve may
-bend: with b bends in m octaves of tested velocities, the probability of a bend in an octave is (b + 1)/(m + 2) (rule of
-succession). The bend is at any velocity in the octaves up to the further test. The slope behind it is at least zero,
-and at most F/v or that of the last segment. A law without this bend has an error in each of these cases: their mean
-square and their limit of nine of ten replace the values above where they are larger. Inside the tests, e_in is the
-geometric mean of the errors left out. e_in,90 is the upper limit of a further value of a normal distribution of their
-logarithms, from Student's t: m + t_90(n - 1) s sqrt(1 + 1/n).
+F_90 is the quantile of the F distribution: one unknown force, its variance estimated from the n tests with samples in
+the range. Their errors count as independent, although they are of one law. Every test contains slower samples, because
+its velocity passes zero, but no test contains faster ones. Above the fastest test the curve may bend. After b bends in
+m octaves of tested velocities, the next event is a bend before the end of an octave with the probability
+(b + 1)/(b + m + 2): rule of succession, b successes in b + m trials. The bend is at any velocity in the octaves up to
+the further test. The slope behind it is at least zero, and at most F/v or that of the last segment. A law without this
+bend has an error in each of these cases: their mean square and their limit of nine of ten replace the values above
+where they are larger. Inside the tests, e_in is the geometric mean of the errors left out. e_in,90 is the upper limit
+of a further value of a normal distribution of their logarithms, from Student's t: m + t_90(n - 1) s sqrt(1 + 1/n).
 
 Sources: rule of succession: Laplace, Essai philosophique sur les probabilites; random walk as discrepancy of a model:
 Kennedy and O'Hagan, J. R. Stat. Soc. B 63 (2001), 4.2; limits of a further value: Hahn and Meeker, Statistical
@@ -125,14 +126,15 @@ def expected_error(fit: DamperFit, speeds: tuple[float, float], velocity: float)
     slowest, fastest = speeds
     slower = velocity < slowest
     distance = np.log(slowest / velocity if slower else max(velocity / fastest, 1.0)) / np.log(RATIO)
-    change = 0.0
+    change, counted = 0.0, 1
     if distance > 0.0:
         without, fitted = fit.ranges["slower" if slower else "faster"]
         change = distance * max(float(np.nanmean(without**2 - fitted**2)), 0.0)
+        counted = int(np.count_nonzero(~np.isnan(without)))
     mean, spread = float(np.mean(logarithms)), np.nan
     if tests > 2:
         spread = float(np.std(logarithms, ddof=1) * scipy.stats.t.ppf(SHARE, tests - 1) * np.sqrt(1.0 + 1.0 / tests))
-    at_most = scipy.stats.f.ppf(SHARE, 1, tests) * change
+    at_most = scipy.stats.f.ppf(SHARE, 1, counted) * change
     if distance > 0.0 and not slower:
         square, limit = _bend_beyond(fit, slowest, fastest, velocity)
         change, at_most = max(change, square), max(at_most, limit)
@@ -140,13 +142,17 @@ def expected_error(fit: DamperFit, speeds: tuple[float, float], velocity: float)
     return Expected(float(np.sqrt(np.exp(2.0 * mean) + change)), float(highest))
 
 
+def bend_probability(bends: int, octaves: float, further: float) -> float:
+    """Return the probability of a bend in some further octaves, after a number of bends in the tested octaves."""
+    return float(1.0 - (1.0 - (bends + 1.0) / (bends + octaves + 2.0)) ** further)
+
+
 def _bend_beyond(fit: DamperFit, slowest: float, fastest: float, velocity: float) -> tuple[float, float]:
     """Return the mean square and the limit of nine of ten squares of the error by a bend beyond the fastest test.
 
     The motion is a sine up to a velocity [m/s].
     """
-    octaves = np.log2([fastest / slowest, velocity / fastest])
-    bend = 1.0 - (1.0 - (fit.law.bends + 1.0) / (octaves[0] + fit.law.bends + 2.0)) ** octaves[1]
+    bend = bend_probability(fit.law.bends, *np.log2([fastest / slowest, velocity / fastest]))
     moving = velocity * np.sin(2.0 * np.pi * (np.arange(PHASES) + 0.5) / PHASES)
     force = steady_force(fit.law, fit.parameters, moving)[0]
     shares = (np.arange(CASES) + 0.5) / CASES

@@ -32,6 +32,15 @@ def caption_of(fitted: FittedDamper) -> str:
     return f"{f'{condition}: ' if condition else ''}{len(fitted.tests)} test{'s'[: len(fitted.tests) > 1]}: {names}"
 
 
+def notice_lines(fitted: FittedDamper) -> list[str]:
+    """Return each notice once, after the names of its tests."""
+    names: dict[str, list[str]] = {}
+    for test in fitted.tests:
+        for text in test.notices:
+            names.setdefault(text, []).append(test.name)
+    return [f"{', '.join(tests)}: {text}" for text, tests in names.items()]
+
+
 class Candidate(NamedTuple):
     """Law that was compared."""
 
@@ -90,6 +99,26 @@ def expected_rows(fitted: FittedDamper) -> list[tuple[str, Expected]]:
         RATIO * fastest: f"{number(1e3 * RATIO * fastest, 2)} mm/s, twice the fastest test",
     }
     return [(text, expected_error(fitted.fit, fitted.speeds, speed)) for speed, text in texts.items()]
+
+
+def next_test(fitted: FittedDamper) -> str:
+    """Return the further test with the largest error: to expect by velocity, left out by amplitude.
+
+    Empty if none is larger than the error to expect in the range of the tests.
+    """
+    below, inside, above = (expected.usual for _, expected in expected_rows(fitted))
+    slowest, fastest = (number(1e3 * speed, 2) for speed in (fitted.speeds[0] / RATIO, RATIO * fitted.speeds[1]))
+    smallest, largest = (number(1e3 * amplitude, 2) for amplitude in fitted.tested["amplitude"])
+    errors = {
+        f"up to {slowest} mm/s": below,
+        f"up to {fastest} mm/s": above,
+        f"with an amplitude below {smallest} mm": _range_error(fitted.fit, "smaller")[0],
+        f"with an amplitude above {largest} mm": _range_error(fitted.fit, "larger")[0],
+    }
+    text, error = max(errors.items(), key=lambda each: -1.0 if math.isnan(each[1]) else each[1])
+    if not error > inside:
+        return ""
+    return f"a test {text} would help most: its error may be {number(error, 2)}, against {number(inside, 2)} inside"
 
 
 def choice_sentence(fitted: FittedDamper) -> str:
@@ -244,6 +273,7 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             {"velocity": text, "usual": usual, "nine_of_ten_below": _or_none(limit)}
             for text, (usual, limit) in expected_rows(fitted)
         ],
+        "next_test": next_test(fitted),
         "not_determined": fitted.left_open(),
         "notices": [f"{test.name}: {text}" for test in fitted.tests for text in test.notices],
     }
@@ -270,7 +300,7 @@ def tests_text(fits: Sequence[FittedDamper]) -> str:
 def summary_lines(fitted: FittedDamper) -> list[str]:
     """Return the printed summary: laws with their errors on tests left out, tests, parameters, what is left open."""
     fit = fitted.fit
-    lines = [caption_of(fitted), *(f"notice: {test.name}: {text}" for test in fitted.tests for text in test.notices)]
+    lines = [caption_of(fitted), *(f"notice: {text}" for text in notice_lines(fitted))]
     slow, fast = (number(1e3 * speed, 2) for speed in (fitted.speeds[0] / RATIO, RATIO * fitted.speeds[1]))
     lines.append(
         f"{'left out':>9}{'slower':>8}{'faster':>8}{f'at {slow} mm/s':>14}{f'at {fast} mm/s':>14}{'parameters':>11}  "
@@ -290,6 +320,8 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
         lines += [f"{text:<52}{inside:>8.3f}{outside:>10.3f}" for text, outside, inside in rows]
     lines.append(f"{'error to expect in a further test with up to':<52}{'usual':>8}{'nine of ten below':>20}")
     lines += [f"{text:<52}{usual:>8.3f}{_or_dash(limit, 3):>20}" for text, (usual, limit) in expected_rows(fitted)]
+    if further := next_test(fitted):
+        lines.append(f"next: {further}")
     if float(np.max(fit.fitted)) > POOR:
         lines.append(
             f"poor fit: an error is above {POOR:g}; check signs and time shifts of the channels, and look at the "
