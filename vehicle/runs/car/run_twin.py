@@ -3,7 +3,7 @@
 The twin (`vehicle.engines.reduced.twin_run`) drives over the same road. The random phases of the road act on both
 alike, so the difference between run and twin gives the error of a value of the run
 (`vehicle.signals.analysis.comfort_error`). Other roads have no twin, nor cams, which follow the upper envelope of the
-road. A twin of controlled dampers, or of stops, has their energy too; the share that it explains measures how alike it is.
+road. A twin of controlled dampers, or of stops, has their energy too; the explained share measures how alike it is.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
