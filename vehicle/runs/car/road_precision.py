@@ -2,7 +2,7 @@
 
 The error of a run on a road that repeats is what its linear twin leaves (`vehicle.runs.car.run_twin`). It comes from
 friction, which the linear car does not predict: closed predictions were 1 to 12 times too small. So a pilot of
-`SHORTEST_SPAN_S` with the reduced engine states half of its own 95 % interval, e(T), which falls with 1/sqrt(T), and
+`SHORTEST_SPAN_S` with the reduced engine gives half of its own 95 % interval, e(T), which falls with 1/sqrt(T), and
 the evaluated span becomes
 
     T' = T (e(T)/P)^2,

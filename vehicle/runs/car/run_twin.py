@@ -3,7 +3,7 @@
 The twin (`vehicle.engines.reduced.twin_run`) drives over the same road. The random phases of the road act on both
 alike, so the difference between run and twin gives the error of a value of the run
 (`vehicle.signals.analysis.comfort_error`). Other roads have no twin, nor cams, which follow the upper envelope of the
-road. A twin of controlled dampers, or of stops, has their energy too; the share that it explains tells how alike it is.
+road. A twin of controlled dampers, or of stops, has their energy too; the explained share measures how alike it is.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -157,7 +157,7 @@ def twin_lines_of(
         damping = damping_of_run(model, laws, record, slice(first, first + samples))
         # Cars that differ in friction share their poles.
         by_poles.setdefault(model, {})[number] = damping
-    lines: Complex = np.empty(0)
+    lines: Complex = np.empty(0, dtype=np.complex128)
     for model, dampings in by_poles.items():
         frequency, found = twin_lines(model, [*dampings.values()], roads, period.length, chosen, samples)
         if not lines.size:
