@@ -65,8 +65,9 @@ def test_stribeck_friction_at_constant_velocity_is_its_formula(series, excess):
     law = DamperLaw(friction="stribeck", series=series)
     parameters = np.array([0.0, 1500.0, 60.0, excess, 0.02, *([2e6] if series else [])])
     for speed in (-0.05, -0.015, 0.005, 0.02, 0.1):
-        time = np.arange(400) * 1e-3
-        force, _ = force_and_slopes(law, parameters, Motion(time, speed * time, np.full(time.size, speed), 0.0))
+        time = np.arange(400.0) * 1e-3
+        stroke = np.asarray(speed * time, dtype=np.float64)
+        force, _ = force_and_slopes(law, parameters, Motion(time, stroke, np.full(time.size, speed), 0.0))
         friction = 60.0 + excess * np.exp(-((speed / 0.02) ** 2))
         assert force[-1] == pytest.approx(1500.0 * speed + np.sign(speed) * friction, rel=1e-6)
 
