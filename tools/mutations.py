@@ -44,7 +44,7 @@ FAULTS = (
     Fault("vehicle/signals/analysis/frf_agreement.py", "np.abs(np.vdot(bottom, top)) ** 2 / power", "np.abs(np.vdot(bottom, top)) / power**0.5", "signals/analysis/test_frf_agreement.py"),
     Fault("vehicle/signals/analysis/slip.py", "> limits[:, None])", ">= 1.05 * limits[:, None])", "signals/analysis/test_slip.py"),
     Fault("vehicle/signals/excitation/iso_road.py", "int(np.ceil(self.envelope.reach * parts / step)) + 1", "1", "signals/excitation/test_iso_road.py signals/excitation/test_tyre_envelope.py"),
-    Fault("vehicle/signals/excitation/iso_road.py", "speed * slope[: steps + 1] * rise + rise_rate * z", "speed * slope[: steps + 1] * rise", "signals/excitation/test_iso_road.py signals/excitation/test_tyre_envelope.py"),
+    Fault("vehicle/signals/excitation/iso_road.py", "_finished(speed * _repeated(slope, steps + 1) * rise + rising)", "_finished(speed * _repeated(slope, steps + 1) * rise)", "signals/excitation/test_iso_road.py signals/excitation/test_tyre_envelope.py"),
     Fault("scenarios/signals/bump.py", "6.0 * np.pi * since", "5.9 * np.pi * since", "scenarios/signals signals/excitation"),
     Fault("vehicle/signals/records/integration.py", "(frequency / corner) ** (2 * ORDER)", "(frequency / corner) ** ORDER", "signals/records/test_integration.py"),
     Fault("vehicle/signals/formats/units.py", '"lbf": 4.4482216152605', '"lbf": 4.4822216152605', "signals/formats/test_units.py"),

@@ -11,7 +11,7 @@ from vehicle.commands.show import main
 def test_text_and_json(capsys):
     assert main(["sedan", "--set", "body.mass=1000"]) == 0
     text = capsys.readouterr().out
-    assert text.startswith("sedan, tyres not rolling; body.mass=1000\n")
+    assert text.startswith("sedan, tyres standing; body.mass=1000\n")
     assert "wheelbase     2757 mm" in text and "\nwheel rate [N/mm] " in text and "heave " in text
     assert main(["sedan", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)

@@ -267,4 +267,4 @@ def test_a_sweep_with_one_job_knows_the_law():
     alone = [car_with("degressive", **{"body.mass": mass}).run(ride, engine="reduced") for mass in (1250.0, 1350.0)]
     expected = [run.comfort().unweighted.overall for run in alone]
     # Cars of a table march together in single precision.
-    assert table.column("unweighted") == pytest.approx(expected, rel=1e-4)
+    assert table.column("unweighted") == pytest.approx(expected, rel=1e-3)  # steps of 0.5 ms: 0.05 %

@@ -165,7 +165,7 @@ def test_matrices_have_the_tangent_at_rest(plain_car, variant):
 
 def test_small_and_large_vibrations_of_a_car(plain_car):
     """Rubber that does not slide is a spring; the energy of rubber that slides is accounted for."""
-    road = Road("A", speed=80, duration=2.5)
+    road = Road("A", speed=80, duration=2.5, period="record")
     spring = plain_car.with_(stiffened(plain_car)).run(road)
     stuck, sliding = (Car.load("focus_road", rubber(factor)).run(road) for factor in (400.0, 1.0))
     for name in ("seat rail z", "engine z", "knuckle fr z"):
@@ -225,7 +225,7 @@ def test_both_engines_with_friction_along_14_axes(cars):
     assert sum(law.friction for law in car.matrices.laws) == 14
     names = [name for name in car.vehicle.channels if not name.startswith("plate")]
     columns = [*names, *sorted(LOADS)]
-    found = dict(zip(columns, ratios(car, Road("A", speed=80, duration=5), columns), strict=True))
+    found = dict(zip(columns, ratios(car, Road("A", speed=80, duration=5, period="record"), columns), strict=True))
     source = "second derivation: MuJoCo at 0.25 ms"
     validated(
         "Reduced engine", "RMS of all channels over that of MuJoCo, rubber friction along 14 axes, class A",

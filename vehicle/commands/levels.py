@@ -90,10 +90,14 @@ class LevelSettings(Settings):
     band: tuple[float, float] | None = setting(
         "band of the peak [Hz]; default: around the peak that falls most from the lowest to the highest level",
         type=pair("--band", "LOW:HIGH in Hz, for example 2:5"),
-        metavar="HZ:HZ",
+        metavar="A:B",
     )
     samples: int = setting(
-        "samples of a period; notices name channels that need more; default: %(default)s", 128, type=int, metavar="N"
+        "samples of a period; notices name channels that need more; default: %(default)s",
+        128,
+        type=int,
+        metavar="K",
+        within="[32, 8192]",
     )
 
 

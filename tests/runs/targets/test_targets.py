@@ -82,7 +82,9 @@ def test_figures_of_a_road_are_those_of_run_and_search(sedan, on_road):
     for name, (each, expected) in pairs.items():
         assert value_of(each, ride)[0] == pytest.approx(expected, rel=1e-12), name
     value, found = value_of(pairs["unweighted"][0], ride)
-    assert found == pytest.approx(comfort.errors["unweighted"] * value, rel=1e-9)
+    # The error of comfort also has what the phases of this road add to the linear car.
+    assert found == pytest.approx(comfort.errors["unweighted"] * value, rel=0.02)
+    assert found < comfort.errors["unweighted"] * value
     assert value_of(pairs["travel"][0], ride)[1] is None
 
 

@@ -2,9 +2,18 @@
 
 import numpy as np
 import pytest
+import scipy
 
 from vehicle.signals.analysis.comfort import comfort_values
-from vehicle.signals.analysis.comfort_error import NORMAL_95, STUDENT_95, WAVES, difference_error, paired, wave_error
+from vehicle.signals.analysis.comfort_error import (
+    NORMAL_95,
+    STUDENT_95,
+    WAVES,
+    WIDENED,
+    difference_error,
+    paired,
+    wave_error,
+)
 from vehicle.signals.analysis.ride_comfort import comfort_columns, wave_names
 
 STEP, SAMPLES, RECORDS = 5e-3, 2000, 400
@@ -36,6 +45,12 @@ def test_stated_error_is_the_scatter(related):
     away = np.abs(found.overall / found.overall.mean() - 1.0)
     # 0.94 with many records; a share of 400 is known within 0.012, three times that.
     assert 0.9 < np.mean(away < 1.96 * found.error) < 0.98
+
+
+def test_intervals_are_those_of_student():
+    left, fitted = (scipy.stats.t.ppf(0.975, 2 * WAVES - less) for less in (0, 1))
+    assert pytest.approx(left, rel=1e-9) == STUDENT_95
+    assert pytest.approx(np.sqrt(2 * WAVES / (2 * WAVES - 1)) * fitted / left, rel=1e-9) == WIDENED
 
 
 def test_white_noise_has_the_bandwidth_time_formula():

@@ -97,7 +97,7 @@ def test_a_screening_runs_the_best_beside_their_estimates(sedan: Car):
     run = best.run(road("C", 80, duration=12), "reduced").comfort().weighted.overall
     value = found.values["best weighted"]["weighted"]
     assert value is not None
-    assert value == pytest.approx(run, rel=1e-4)  # batches are in single precision
+    assert value == pytest.approx(run, rel=5e-4)  # steps of 0.5 ms in single precision: 0.05 %
     error = best.estimate(road("C", 80)).comfort.weighted.overall / value - 1.0
     assert screened.errors["best weighted"]["weighted"] == pytest.approx(error, abs=1e-6)
     assert abs(error) < 0.01

@@ -150,7 +150,7 @@ def test_pictures(tmp_path, count):
     values = [tuple(str(v) for v in row) for row in np.array(np.meshgrid(*[[1, 2, 3]] * count)).reshape(count, -1).T]
     cars = ranked(table_of(values, ["a", "b", "c"][:count]))
     assert can_be_drawn(cars)
-    draw_ranked(tmp_path / "sweep.png", cars, "tyres not rolling")
+    draw_ranked(tmp_path / "sweep.png", cars, "tyres standing")
     assert (tmp_path / "sweep.png").stat().st_size > 15_000
 
 

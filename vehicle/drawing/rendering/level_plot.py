@@ -25,7 +25,7 @@ PRONOUNCED = 1.12
 LINKED = 0.12
 """Largest change of ln f from one level to the next along the line of a peak."""
 
-ON_MAP = ("#ffb000", "#ff5fa2", "#ffffff", "#9ee6ff", "#c8ff7a", "#ff8c5a")
+ON_MAP = ("#ffb000", "#ff9ecb", "#ffffff", "#9ee6ff", "#c8ff7a", "#ffb08a")
 """Colours of the dampers on a map: bright, for a dark ground."""
 
 TICKS = (0.2, 0.3, 0.5, 0.7, 1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100)

@@ -234,13 +234,11 @@ def require_speed_once(texts: Iterable[str], speed: float) -> bool:
 
 
 def tyre_words(cars: Iterable[Driving]) -> str:
-    """Return the state of the tyres in one or several runs: "not rolling", "rolling at 50, 80 and 120 km/h"."""
+    """Return the state of the tyres in one or several runs: "standing", "rolling at 50, 80 and 120 km/h"."""
     speeds = sorted({car.speed for car in cars})
     rolling = [f"{3.6 * speed:.4g}" for speed in speeds if speed > 0.0]
     listed = " and ".join(part for part in (", ".join(rolling[:-1]), *rolling[-1:]) if part)
-    return " or ".join(
-        [*(["not rolling"] if 0.0 in speeds else []), *([f"rolling at {listed} km/h"] if rolling else [])]
-    )
+    return " or ".join([*(["standing"] if 0.0 in speeds else []), *([f"rolling at {listed} km/h"] if rolling else [])])
 
 
 def driving_of(table: Mapping[str, Any]) -> Driving:

@@ -41,7 +41,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtrit
 
 from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.analysis.spectra import lines_of_band, record_lines
@@ -53,11 +52,12 @@ WAVES = 3
 NORMAL_95 = 1.96
 """Standard errors in half of a 95 % interval; its coverage is measured in `docs/theory/statistics.md`."""
 
-STUDENT_95 = float(stdtrit(2 * WAVES, 0.975))
-"""The same for an error that is itself estimated with 2 `WAVES` degrees of freedom."""
+STUDENT_95 = 2.446911851
+"""The same for an error that is itself estimated with 2 `WAVES` degrees of freedom: t_0.975 with 6 of them."""
 
-WIDENED = float(np.sqrt(2 * WAVES / (2 * WAVES - 1)) * stdtrit(2 * WAVES - 1, 0.975)) / STUDENT_95
-"""Factor on waves from which one degree of freedom is taken by a fit: then `STUDENT_95` fits them too."""
+WIDENED = float(np.sqrt(6.0 / 5.0)) * 2.570581836 / STUDENT_95
+"""Factor on waves from which one degree of freedom is taken by a fit, with t_0.975 of the 5 left: then `STUDENT_95`
+fits them too."""
 
 LEAST_EXPLAINED = 0.5
 """Minimum share of the scatter that the twin must explain. Below it, the run and its twin are two different cars, and

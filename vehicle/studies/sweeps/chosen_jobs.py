@@ -3,6 +3,7 @@
 from collections.abc import Collection
 from contextlib import suppress
 
+from vehicle.digits import number
 from vehicle.machine import free_memory
 from vehicle.runs.output.run_size import BASE
 from vehicle.studies.sweeps.case import Case
@@ -52,4 +53,4 @@ def chosen_jobs(each: Collection[Case], runs: int, measure: Measure) -> tuple[in
     count = min(int(seconds / START), processors(), int(free_memory() / (4.0 * BASE)))
     if count < 2:
         return 1, ""
-    return count, f"{count} processes for about {seconds:.2g} s of work on one; --jobs sets another number"
+    return count, f"{count} processes for about {number(seconds, 2)} s of work on one; --jobs sets another number"
