@@ -31,7 +31,7 @@ Run(road_C_80, 4 s, reduced, Car(focus_road, ...))
 >>> table = sweep(car, {"front.damper.viscous": [1800, 2250]}, road("C", 80, duration=4), engine="reduced")
 >>> table.to_dataframe()["weighted [m/s2]"].shape
 (2,)
->>> abs(table.column("weighted")[1] / drive.comfort().weighted.overall - 1) < 5e-4  # a sweep has steps of 0.5 ms
+>>> bool(abs(table.column("weighted")[1] / drive.comfort().weighted.overall - 1) < 5e-4)  # a sweep has steps of 0.5 ms
 True
 
 Names are imported at their first use; `help(vehicle.sweep)` prints the documentation of a name.
