@@ -161,6 +161,7 @@ def commands(inputs: Path) -> list[Written]:
         job("new", new, ["1450"], ["1500"]),
         changed("mjcf", "mjcf", "--output", "a"),
         changed("show", "show", "--output", "a"),
+        changed("levels", "levels", "focus", "--frequency", "3,8", "--level", "0.1,1", "--output", "a"),
         changed("fmu", "fmu", "--output", "a.fmu"),
         job("modes --uff", ["modes", "--uff", "a.uff", "--damper"], ["stuck"], ["sliding"]),
         job("fit-mount", ["fit-mount", "--output", "a"], [str(mounts[0])], [str(mounts[1])]),

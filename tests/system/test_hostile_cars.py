@@ -43,6 +43,7 @@ WORDS = {
     "comfort": ("--input", "RUN/time.npz", "--channel", "seat_rail"),
     "mjcf": ("--vehicle", "CAR", "--output", "out"),
     "show": ("CAR", "--output", "out"),
+    "levels": ("CAR", "--frequency", "5,8", "--level", "0.1,1", "--output", "out"),
     "kinematics": ("--vehicle", "CAR", "--axle", "front", "--travel", "0:10:10", "--output", "out"),
     "road": ("--vehicle", "CAR", "--class", "C", "--speed", "80", "--duration", "2", "--output", "out/road.csv"),
     "inspect": ("controller.fmu",),
