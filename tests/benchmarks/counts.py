@@ -136,9 +136,10 @@ def command_counts() -> dict[str, int]:
             text=True,
             check=True,
         ).stdout
-        # Those of Python itself depend on its version.
+        # Those of Python itself, and of the installation, differ between machines.
+        packages = {word.partition(".")[0] for word in text.split()} - sys.stdlib_module_names - {"sitecustomize"}
         found[f"{name}, modules"] = sum(word.startswith("vehicle") for word in text.split())
-        found[f"{name}, packages"] = len({word.partition(".")[0] for word in text.split()} - sys.stdlib_module_names)
+        found[f"{name}, packages"] = sum(not package.startswith("_") for package in packages)
     return found
 
 
