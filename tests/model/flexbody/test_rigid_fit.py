@@ -3,6 +3,7 @@
 import json
 import tomllib
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -196,10 +197,10 @@ def test_the_command_writes_lines_of_a_vehicle_file(part, mass, folder, engine, 
     car = tmp_path / "car.toml"
     car.write_text(f'name = "car"\nbase = "sedan"\n{piece.read_text(encoding="utf-8")}', encoding="utf-8")
     loaded = load_vehicle(car)
-    table = tomllib.loads(piece.read_text(encoding="utf-8"))
+    value: Any = tomllib.loads(piece.read_text(encoding="utf-8"))
     for key in mass.split("."):
-        table = table[key]
-    assert table == float(f"{values['mass']:.5g}")
+        value = value[key]
+    assert value == float(f"{values['mass']:.5g}")
     if part == "engine":
         engine_part = next(each for each in loaded.composition.parts if each.name == "engine")
         np.testing.assert_allclose(engine_part.cog, [values[axis] for axis in "xyz"], rtol=1e-4)

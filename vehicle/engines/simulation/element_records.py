@@ -47,6 +47,20 @@ class Bushings(NamedTuple):
     directions: Table
 
 
+class AirSprings(NamedTuple):
+    """Elements whose stiffness along z follows from their static load, k of them; see `parameters.air_spring`.
+
+    Attributes:
+        elements: indices among the bushings; (k,).
+        bellows: stiffness of the bellows alone [N/m]; (k,).
+        numbers: area [m2], volume [m3], growth of the area [m]; (k, 3).
+    """
+
+    elements: Index
+    bellows: Vector
+    numbers: Table
+
+
 class Rotations(NamedTuple):
     """Elements with a rotational stiffness, m of them.
 
@@ -346,7 +360,7 @@ class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
-        bushings, rubber, rotations, springs, dampers, presliding, sides, controls, own, tables, modes, space,
+        bushings, air, rubber, rotations, springs, dampers, presliding, sides, controls, own, tables, modes, space,
             rolling, round, fluids, applied: records of the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
@@ -355,6 +369,7 @@ class Layout(NamedTuple):
     """
 
     bushings: Bushings
+    air: AirSprings
     rubber: RubberFriction
     rotations: Rotations
     springs: Springs

@@ -1,4 +1,4 @@
-"""Nonlinear laws over displacement and their operating points."""
+"""Nonlinear laws over displacement and air springs: operating points, and the stiffness there."""
 
 from collections.abc import Sequence
 
@@ -7,6 +7,7 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.engines.simulation.element_records import Layout, Table, Tables
 from vehicle.model.laws.curve import Curve
+from vehicle.model.parameters.air_spring import air_stiffness
 
 
 def tables_through(points: Sequence[tuple[Table, tuple[int, int, int]]]) -> Tables:
@@ -34,7 +35,7 @@ def curve_of(tables: Tables, index: int) -> Curve:
 
 
 def standing_on(layout: Layout, preload: Vector | None) -> Layout:
-    """Return the layout with the operating points of the curves, and their tangents as stiffness.
+    """Return the layout with the operating points of the curves, and tangents and air stiffness at these points.
 
     Args:
         layout: layout of the elements.
@@ -57,8 +58,14 @@ def standing_on(layout: Layout, preload: Vector | None) -> Layout:
             stiffness[element, axis] = tangent
         else:
             springs[element] = tangent
+    branch = layout.bushings.branch_stiffness.copy()
+    for element, bellows, numbers in zip(*layout.air, strict=True):
+        # The levelled air carries the static force, upwards on the carrier.
+        load = 0.0 if preload is None else -float(preload[layout.bushings.rows[element, 2]])
+        gas, branch[element, 2] = air_stiffness(load, *numbers)
+        stiffness[element, 2] = bellows + gas
     return layout._replace(
         tables=t._replace(at=at),
-        bushings=layout.bushings._replace(stiffness=stiffness),
+        bushings=layout.bushings._replace(stiffness=stiffness, branch_stiffness=branch),
         springs=layout.springs._replace(stiffness=springs),
     )

@@ -102,6 +102,7 @@ def law_fields(names: LawNames, numbers: Numbers, timestep: float) -> dict[str, 
     # The tangent at rest: K and all k_i of the axis; `add.at` adds to one entry several times.
     np.add.at(stiffness, (rubber["elements"], rubber["axes"]), rubber["stiffness"])
     rolling = fields("rolling", names.bushings, 5)
+    air = _true_indices(f"air/{name}" in numbers for name in names.bushings)
     user_laws = [(index, law_by_address(law)) for index, law in _words(names, numbers, "function")]
     presliding = fields("presliding", tuple(dict.fromkeys(names.presliding)), 2)
     shares = [numbers[f"inertia/{name}"][1] for name in fluid_coordinates(names, numbers)]
@@ -118,6 +119,7 @@ def law_fields(names: LawNames, numbers: Numbers, timestep: float) -> dict[str, 
             "oblique": _true_indices(f"directions/{name}" in numbers for name in names.bushings),
             "directions": fields("directions", names.bushings, 9),
         },
+        "air": {"elements": air, "bellows": laws[air, 2], "numbers": fields("air", names.bushings, 3)},
         "rubber": rubber,
         "rotations": {"stiffness": laws[laws[:, TURNING] > 0.0, TURNING].copy()},
         "springs": {"stiffness": np.array([float(numbers[f"law/{name}"][0]) for name in names.springs])},
