@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
+from vehicle.errors import ConfigurationError
 from vehicle.model.laws.amplitude import friction_elements
 from vehicle.model.parameters.air_spring import air_stiffness
 from vehicle.runs.car import Car
@@ -108,6 +109,17 @@ def axles(tmp_path_factory):
         file.write_text(text.replace("NAME", name), encoding="utf-8")
         cars[name] = Car.load(file)
     return cars
+
+
+def test_half_of_an_axle_may_have_the_mass_of_a_truck(axles):
+    """An axle of 900 kg was refused, since its halves had the limit of a part of one side; a tyre still has it."""
+    leaf = axles["leaf_axle"]
+    heavy = leaf.with_({"rear.parts.axle.mass": 450.0, "rear.parts.axle.inertia": [90.0, 20.0, 90.0]})
+    more = sum(heavy.static.tyre_load.values()) - sum(leaf.static.tyre_load.values())
+    assert more == pytest.approx(2.0 * (450.0 - 32.0) * leaf.vehicle.gravity, rel=1e-6)
+    for path, limit in (("axle", 500), ("tyre", 150)):
+        with pytest.raises(ConfigurationError, match=rf"mass: found 600 kg, must be 0.02 to {limit} kg"):
+            leaf.with_({f"rear.parts.{path}.mass": 600.0})
 
 
 def test_wheel_rates_in_equal_travel(axles):
