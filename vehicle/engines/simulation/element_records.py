@@ -50,6 +50,8 @@ class Bushings(NamedTuple):
 class AirSprings(NamedTuple):
     """Elements whose stiffness along z follows from their static load, k of them; see `parameters.air_spring`.
 
+    No part of `Layout`: the core reads the stiffness that follows.
+
     Attributes:
         elements: indices among the bushings; (k,).
         bellows: stiffness of the bellows alone [N/m]; (k,).
@@ -360,7 +362,7 @@ class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
-        bushings, air, rubber, rotations, springs, dampers, presliding, sides, controls, own, tables, modes, space,
+        bushings, rubber, rotations, springs, dampers, presliding, sides, controls, own, tables, modes, space,
             rolling, round, fluids, applied: records of the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
@@ -369,7 +371,6 @@ class Layout(NamedTuple):
     """
 
     bushings: Bushings
-    air: AirSprings
     rubber: RubberFriction
     rotations: Rotations
     springs: Springs

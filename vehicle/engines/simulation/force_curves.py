@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.engines.simulation.element_records import Layout, Table, Tables
+from vehicle.engines.simulation.element_records import AirSprings, Layout, Table, Tables
 from vehicle.model.laws.curve import Curve
 from vehicle.model.parameters.air_spring import air_stiffness
 
@@ -34,11 +34,12 @@ def curve_of(tables: Tables, index: int) -> Curve:
     return Curve(knots=knots, slopes=tables.slopes[index, :count], offsets=tables.offsets[index, :count])
 
 
-def standing_on(layout: Layout, preload: Vector | None) -> Layout:
+def standing_on(layout: Layout, air: AirSprings, preload: Vector | None) -> Layout:
     """Return the layout with the operating points of the curves, and tangents and air stiffness at these points.
 
     Args:
         layout: layout of the elements.
+        air: air springs among the bushings.
         preload: static forces, see `Weights`; None before the static trim, which starts with the steepest segments.
     """
     t, stiffness, springs = layout.tables, layout.bushings.stiffness.copy(), layout.springs.stiffness.copy()
@@ -59,7 +60,7 @@ def standing_on(layout: Layout, preload: Vector | None) -> Layout:
         else:
             springs[element] = tangent
     branch = layout.bushings.branch_stiffness.copy()
-    for element, bellows, numbers in zip(*layout.air, strict=True):
+    for element, bellows, numbers in zip(*air, strict=True):
         # The levelled air carries the static force, upwards on the carrier.
         load = 0.0 if preload is None else -float(preload[layout.bushings.rows[element, 2]])
         gas, branch[element, 2] = air_stiffness(load, *numbers)

@@ -11,7 +11,6 @@ from vehicle.arrays import Mask, Vector
 from vehicle.engines.simulation.applied_forces import applied_record
 from vehicle.engines.simulation.damper_rows import damper_rows, presliding_rows, side_forces
 from vehicle.engines.simulation.element_records import (
-    AirSprings,
     Bushings,
     Controls,
     Fluids,
@@ -114,7 +113,6 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     round_tyres = [(names.index(name), ends[name]) for name in names if f"round/{name}" in numbers]
     return Layout(
         bushings=Bushings(rows=_triples(rows_of(names)), carriers=carriers, **of["bushings"]),
-        air=AirSprings(**of["air"]),
         rubber=RubberFriction(**of["rubber"]),
         rotations=Rotations(
             sites=whole_numbers([ends[name] for name in rotational], 2),

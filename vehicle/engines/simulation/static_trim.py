@@ -140,11 +140,11 @@ def settle(rows: Rows, design: AtRest, joint_stiffness: Vector) -> Settled:
     """
     settled = _settled(rows, design, joint_stiffness)
     t = rows.layout.tables
-    air = rows.layout.air.elements
+    air = rows.air.elements
     if not len(t.at) and not len(air):
         return settled
     for _ in range(MOST_TRIMS):
-        last, rows.layout = rows.layout, standing_on(rows.layout, settled.preload)
+        last, rows.layout = rows.layout, standing_on(rows.layout, rows.air, settled.preload)
         settled = _settled(rows, design, joint_stiffness)
         now = rows.layout
         same = ((layout.bushings.stiffness, layout.springs.stiffness, layout.tables.at) for layout in (now, last))
