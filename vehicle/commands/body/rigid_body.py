@@ -45,7 +45,7 @@ class RigidSettings(Settings):
         "range in which the body is rigid [Hz]; default: from twice the highest support mode to half of the first "
         "elastic resonance",
         type=pair("--band", "LOW:HIGH in Hz, for example 8:70", above=0.0),
-        metavar="LOW:HIGH",
+        metavar="A:B",
     )
     points: Path | None = setting(
         "table point,x [m],y [m],z [m] with the positions that FRF_FILE does not contain", type=Path, metavar="FILE"
