@@ -10,8 +10,8 @@ import scipy
 
 from vehicle.arrays import Vector
 from vehicle.digits import beside_limit
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import DisplacementLaw
-from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.road_drive import RoadDrive
@@ -49,7 +49,7 @@ def require_class(source: Any) -> RoadDrive:
     )
 
 
-def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
+def require_laws(dampers: Sequence[PlacedDamper], matrices: CarMatrices) -> None:
     """Check that the force of each damper follows from its velocity, and that the road is the only excitation.
 
     Raises:
@@ -69,12 +69,12 @@ def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
                 raise ConfigurationError(
                     f"estimate: {damper.path} {reason}, so its force does not follow from its velocity alone; {REMEDY}"
                 )
-    for each in model.laws:
+    for each in matrices.laws:
         if each.friction:
             raise ConfigurationError(
                 f"estimate: {each.name} has rubber friction, whose force depends on its history; {REMEDY}"
             )
-    if model.forced:
+    if matrices.forced:
         raise ConfigurationError(
             "estimate: forces of the vehicle file shake the car too; leave them out with "
             f"--set apply_forces=false, or {REMEDY}"
