@@ -1,8 +1,8 @@
 """Linear part of a car on a road of a class: the responses that cars with other force laws of their dampers share.
 
 A car that differs from its base car in further parameters gets a linear part of its own: from its poles, or, by ports,
-from the responses of the base car (`vehicle.engines.reduced.line_ports`). Ports take a tenth of a second once for each
-set of changed parameters and then a tenth of the time of new poles, so they pay in studies of many cars.
+from the responses of the base car (`vehicle.engines.reduced.line_ports`). Ports take 0.1 s once for the parameters that
+change, and then a tenth of the time that new poles take, so they pay in studies of many cars.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ EXAMPLE = 1.25
 """Factor of a parameter in the example of the directions in which it changes a car; a zero becomes 1."""
 
 UNIT_CLASS = "A"
-"""Class of the responses that are computed; those of another class are proportional to the root of its level."""
+"""Class whose responses are computed; other classes multiply them by the root of their level."""
 
 
 class LinearPart(NamedTuple):
