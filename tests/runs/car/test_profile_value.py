@@ -69,7 +69,7 @@ def test_intervals_cover_a_run_over_the_whole_profile(files: dict[str, Path], ki
     value, whole = over_profile(car, road(files[kind], 80, precision=1)), of_whole(car, files[kind])
     assert len(value.parts) < 0.8 * value.pieces and value.run.signal.duration < 0.9 * value.length
     validated(
-        "Statistics and intervals", f"weighted comfort of {name} over a profile ({kind}) from pieces, in half intervals",
+        "Statistics and intervals", f"comfort of {name} over a profile ({kind}) from pieces, in half intervals",
         misses(value, whole)["weighted"], 0.0, abs=1.0, source="second derivation: a run over the whole profile",
     )  # fmt: skip
     # 95 % intervals of a dozen values that depend on each other.

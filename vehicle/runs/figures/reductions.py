@@ -13,7 +13,7 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import SATURATED_VELOCITY
 from vehicle.runs.car.run_twin import TwinLines
-from vehicle.runs.figures.figure import Details, Reduction, Values
+from vehicle.runs.figures.figure import Details, Reduction, TwinValues, Values
 from vehicle.runs.figures.rows import recorded, velocities, wheels_of
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.comfort_error import overall_error, overall_waves
@@ -64,15 +64,16 @@ def _rms_of_wheels(rows: Vector, details: Details, runs: Runs) -> Values:
     return values if values.waves is None else values._replace(waves=values.waves / np.sqrt(rows.shape[1]))
 
 
-def _line_waves(lines: Complex, details: Details, _: Runs, twin: TwinLines) -> Complex:
-    """Return the waves of the root of a sum of mean squares of lines."""
+def _of_lines(lines: Complex, details: Details, _: Runs, twin: TwinLines) -> TwinValues:
+    """Return the root of a sum of mean squares of lines."""
     if details.band:
         lines = lines[:, :, lines_in_band(twin.frequency, (details.band[0], details.band[1]))]
-    return overall_waves(lines)
+    return TwinValues(np.sqrt(np.sum(np.abs(lines) ** 2, axis=(1, 2))), overall_waves(lines))
 
 
-def _line_waves_of_wheels(lines: Complex, details: Details, runs: Runs, twin: TwinLines) -> Complex:
-    return np.asarray(_line_waves(lines, details, runs, twin) / np.sqrt(lines.shape[1]))
+def _of_lines_of_wheels(lines: Complex, details: Details, runs: Runs, twin: TwinLines) -> TwinValues:
+    values, root = _of_lines(lines, details, runs, twin), np.sqrt(lines.shape[1])
+    return TwinValues(values.value / root, values.waves / root)
 
 
 def _ratio(rows: Vector, details: Details, runs: Runs) -> Values:
@@ -169,8 +170,8 @@ def _first_slip(_: Vector, details: Details, runs: Runs) -> Values:
     return Values(np.fmin.reduce(each))
 
 
-RMS = Reduction(of=_rms_of_channels, page="rms", lines=_line_waves)
-WHEEL_RMS = Reduction(of=_rms_of_wheels, page="wheel_rms", lines=_line_waves_of_wheels)
+RMS = Reduction(of=_rms_of_channels, page="rms", lines=_of_lines)
+WHEEL_RMS = Reduction(of=_rms_of_wheels, page="wheel_rms", lines=_of_lines_of_wheels)
 RATIO = Reduction(of=_ratio)
 PEAK = Reduction(of=lambda rows, *_: Values(np.abs(rows).max(axis=(1, 2))), page="peak")
 PEAK_TO_PEAK = Reduction(of=lambda rows, *_: Values(np.ptp(rows, axis=2).max(axis=1)), page="peak_to_peak")

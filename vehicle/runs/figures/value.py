@@ -30,8 +30,11 @@ def values_of(chosen: ChosenFigure, runs: Runs) -> Values:
         return values
     if not {*chosen.channels_of(runs.vehicles[0])} <= {*twin.channels}:
         return values
-    waves = figure.reduces.lines(figure.reads.lines(chosen, runs, twin), chosen, runs, twin)
-    return Values(values.value, *paired(values.error, values.waves, waves))
+    of_twins, reduce = [], figure.reduces.lines
+    for road in twin.roads:
+        of_twins.append(reduce(figure.reads.lines(chosen, runs, road), chosen, runs, road))
+    phase = 0.5 * (of_twins[0].value - of_twins[-1].value)
+    return Values(values.value, *paired(values.error, values.waves, of_twins[0].waves, phase))
 
 
 def require_unit(chosen: ChosenFigure, unit: str, units: Mapping[str, str]) -> None:
