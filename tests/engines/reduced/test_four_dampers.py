@@ -14,7 +14,7 @@ from vehicle.runs.car.road import Road
 
 
 def road(car, road_class, duration):
-    return Road(road_class, 80.0, duration=duration, seed=2, period="record").under(car.vehicle).signal()
+    return Road(road_class, 80.0, duration=duration, seed=2).under(car.vehicle).signal()
 
 
 @pytest.fixture(scope="module")

@@ -136,7 +136,9 @@ def test_values_on_a_seat(files: dict[str, Path]):
         ("skip", {}, "below the lead-in of a piece, 2 s"),
     ],
 )
-def test_what_is_not_covered_is_refused(files: dict[str, Path], sedan: Car, source: str, changes: dict, words: str):
+def test_what_is_not_covered_is_refused(
+    files: dict[str, Path], sedan: Car, source: str, changes: dict[str, float], words: str
+):
     car, skip = sedan.with_(changes) if changes else sedan, 1.0 if source == "skip" else None
     if source == "cams":
         where = road(files["rising"], 80, contact="cams")

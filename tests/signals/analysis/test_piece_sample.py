@@ -15,7 +15,7 @@ def lognormal(seed: int, count: int = 40) -> np.ndarray:
 
 def test_a_quantity_in_proportion_to_the_sizes_has_no_error():
     sizes = lognormal(1)
-    sample = sample_pieces(sizes, 8, NONE)
+    sample = sample_pieces(sizes, sizes, 8, NONE)
     known = 3.0 * sizes
     total, residuals = sample.total(0.7 * known[sample.chosen], known)
     assert total == pytest.approx(0.7 * np.sum(known), rel=1e-12)
@@ -25,7 +25,7 @@ def test_a_quantity_in_proportion_to_the_sizes_has_no_error():
 def test_all_pieces_give_their_sum_without_an_error():
     values, sizes = lognormal(2), lognormal(3)
     for count, always in ((40, NONE), (8, ~NONE)):
-        sample = sample_pieces(sizes, count, always)
+        sample = sample_pieces(sizes, sizes, count, always)
         total, residuals = sample.total(values, sizes)
         assert sample.chosen.tolist() == list(range(40)) and not sample.drawn.any()
         assert total == pytest.approx(np.sum(values), rel=1e-12) and half_interval(residuals) == 0.0
@@ -35,7 +35,7 @@ def test_large_and_chosen_pieces_are_certain_and_the_others_drawn_by_size():
     sizes = np.concatenate([[500.0, 100.0], np.arange(1.0, 39.0)])
     always = NONE.copy()
     always[20] = True
-    sample = sample_pieces(sizes, 6, always)
+    sample = sample_pieces(sizes, sizes, 6, always)
     certain = sample.chosen[~sample.drawn].tolist()
     # Of sum 722 without the certain ones, a piece above 722/6 would reach the probability 1, but 100 does not.
     assert certain == [0, 20] and sample.drawn.sum() == 6 and len(set(sample.chosen.tolist())) == 8
@@ -55,7 +55,7 @@ def test_coverage_of_the_interval_where_the_ratio_changes_with_the_size():
         rng = np.random.default_rng(seed)
         sizes = np.exp(rng.standard_normal(60))
         values = sizes * (1.0 - 0.02 * np.log(sizes)) * (1.0 + 0.03 * rng.standard_normal(60))
-        sample = sample_pieces(sizes, 8, np.zeros(60, dtype=bool))
+        sample = sample_pieces(sizes, sizes, 8, np.zeros(60, dtype=bool))
         total, residuals = sample.total(values[sample.chosen], sizes)
         inside.append(abs(total - np.sum(values)) < half_interval(residuals))
         scatter.append(total / np.sum(values) - 1.0)

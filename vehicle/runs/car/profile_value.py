@@ -188,10 +188,13 @@ class _Survey:
         pieces = max(round((end - first) * self.step / PIECE_S), 1)
         edges = np.linspace(first, end, pieces + 1).round().astype(int)
         self.spans = [slice(begin, end) for begin, end in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True)]
-        self.sizes, self.always = self._survey()
+        self.sizes, self.levels, self.always = self._survey()
 
-    def _survey(self) -> tuple[Vector, Any]:
-        """Return the weighted energy of the twin in each piece, and True where a tyre lifts or a stop acts."""
+    def _survey(self) -> tuple[Vector, Vector, Any]:
+        """Return the weighted energy of the twin in each piece, its level, and True where a tyre lifts or a stop acts.
+
+        The level is the mean square at which the energy occurs, sum a^4/sum a^2: high for a single obstacle too.
+        """
         laws = [damper.law for damper in self.car.vehicle.composition.dampers]
         damping = np.array([line_segments(law).damping(START) for law in laws])
         others = {f"{LAW}{index}": law for index, law in enumerate(self.car.poles.laws)
@@ -203,11 +206,14 @@ class _Survey:
         for outside, most in ((lifted, MOST_LIFTED), (engaged, MOST_ENGAGED)):
             for each in outside:
                 always |= np.array([np.mean(each[span]) > most for span in self.spans])
-        return self._energies(rows, self.spans)[WEIGHTED], always
+        weighted = weighted_axes(self.step, np.stack([rows[f"seat_rail_acc_{axis}"] for axis in AXES]))
+        power = np.square(application("seat").comfort_factors) @ weighted**2
+        sizes, fourth = np.array([[np.sum(power[span]), np.sum(power[span] ** 2)] for span in self.spans]).T
+        return sizes, np.divide(fourth, sizes, out=np.zeros_like(sizes), where=sizes > 0.0), always
 
     def sample(self, count: int) -> PieceSample:
         """Return a sample of pieces with a number of drawn ones."""
-        return sample_pieces(self.sizes, count, self.always)
+        return sample_pieces(self.sizes, self.levels, count, self.always)
 
     def value(self, sample: PieceSample, engine: str) -> ProfileValue:
         """Return the value over the profile by a run of a sample."""

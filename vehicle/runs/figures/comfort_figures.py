@@ -43,7 +43,7 @@ def _comfort(point: str, name: str) -> Reduction:
     def lines(_: Complex, details: Details, runs: Runs, twin: TwinLines) -> TwinValues:
         columns = _of_twin(point, name, runs, twin)
         column = f"{name}_{details.axis}" if details.axis else name
-        return TwinValues(columns[column], waves_of(columns, column))
+        return TwinValues(columns[column], waves_of(columns, column), columns[column])
 
     return Reduction(of=of, lines=lines, page="comfort" if (point, name) == ("seat_rail", WEIGHTED) else "")
 
@@ -78,7 +78,7 @@ def _seat_lines(_: Complex, __: Details, runs: Runs, twin: TwinLines) -> TwinVal
     cushion, rail = (_of_twin(point, WEIGHTED, runs, twin) for point in ("seat", "seat_rail"))
     with np.errstate(divide="ignore", invalid="ignore"):
         value = cushion[f"{WEIGHTED}_z"] / rail[f"{WEIGHTED}_z"]
-    return TwinValues(value, value[:, None] * _ratio_waves(cushion, rail))
+    return TwinValues(value, value[:, None] * _ratio_waves(cushion, rail), value)
 
 
 def _figure(prefix: str, name: str, meaning: str) -> Figure:

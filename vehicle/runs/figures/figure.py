@@ -43,6 +43,8 @@ class TwinValues(NamedTuple):
     """Values; (r,)."""
     waves: Complex
     """Their slow variations; (r, `WAVES` + 1)."""
+    expected: Vector
+    """Their means over the phases of this road, up to what the exchange of its tracks changes; (r,)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

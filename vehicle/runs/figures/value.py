@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Run
 from vehicle.runs.figures.chosen_figure import ChosenFigure, chosen_figure
@@ -33,7 +35,7 @@ def values_of(chosen: ChosenFigure, runs: Runs) -> Values:
     of_twins, reduce = [], figure.reduces.lines
     for road in twin.roads:
         of_twins.append(reduce(figure.reads.lines(chosen, runs, road), chosen, runs, road))
-    phase = 0.5 * (of_twins[0].value - of_twins[-1].value)
+    phase = of_twins[0].value - np.mean([each.expected for each in of_twins], axis=0)
     return Values(values.value, *paired(values.error, values.waves, of_twins[0].waves, phase))
 
 

@@ -169,6 +169,26 @@ def overall_waves(lines: Complex) -> Complex:
     return normalised
 
 
+def power_waves(value: Vector, rows: Vector) -> Complex:
+    """Return the slow variations of a fourth root of a mean of fourth powers, V = (c mean a^4)^(1/4), as in a dose.
+
+    They are the Fourier lines q_m of sum a^4 over the channels, times dV/dq = V/(4 mean a^4), as C_m are those of the
+    mean square: with a flat spectrum near 0 Hz each has the variance of V.
+
+    Args:
+        value: V; (r,).
+        rows: histories a of all channels over the evaluated span; (r, channels, n).
+
+    Returns:
+        Waves, 0 at rest, and a 0 for that of the phases; (r, WAVES + 1).
+    """
+    power = np.sum(rows**4, axis=1)
+    lines = np.fft.rfft(power, axis=1)[:, : WAVES + 1]
+    mean = lines[:, :1].real
+    waves = np.divide(0.25 * value[:, None] * lines, mean, out=np.zeros_like(lines), where=mean > 0.0)
+    return np.asarray(np.roll(waves, -1, axis=1) * np.array([1.0] * WAVES + [0.0]))
+
+
 def difference_error(first: Complex, second: Complex) -> Vector:
     """Return the standard error of the difference of two overall RMS values on the same road.
 

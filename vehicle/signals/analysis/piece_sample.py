@@ -1,13 +1,13 @@
 """Sample of the pieces of a long record: the total of a quantity over all pieces, with its error, from a few of them.
 
 The sizes x_j of all pieces are known, and the quantity y_j, which is nearly in proportion to them, of the chosen ones.
-Pieces are drawn systematically in the order of their sizes, each with the probability p_j = m x_j/X; those that would
-reach 1, and others that must be, are certain. With the known x'_j of any other size, as near to y_j as possible,
+Pieces are drawn systematically in the order of their levels l_j, each with the probability p_j = m x_j/X; those that
+would reach 1, and others that must be, are certain. With the known x'_j of any other size, as near to y_j as possible,
 
     Y = sum over certain y_j + X'_rest R,    R = sum (y_s/p_s)/sum (x'_s/p_s),
     Var Y = m/(2 (m - 1)) sum (d_(i+1) - d_i)^2,    d_i = sqrt(1 - p_i) (y_i - R x'_i)/p_i,
 
-where neighbours in the order of size are compared, because the ratio y/x' may change with the size (a stratified
+where neighbours in the order of level are compared, because the ratio y/x' may change with the level (a stratified
 sample). The estimate has 2 (m - 1)^2/(3 m - 4) degrees of freedom.
 
 Sources: Cochran, Sampling Techniques (1977), chapters 6, 8 and 9A; Wolter, Introduction to Variance Estimation (2007),
@@ -30,8 +30,8 @@ class PieceSample(NamedTuple):
     """Numbers of the pieces."""
     probability: Vector
     """Probabilities p_s with which they are drawn; 1 for certain ones."""
-    sizes: Vector
-    """Sizes x_s by which they are drawn."""
+    levels: Vector
+    """Levels l_s by which they are ordered."""
 
     @property
     def drawn(self) -> npt.NDArray[np.bool_]:
@@ -39,7 +39,7 @@ class PieceSample(NamedTuple):
         return np.asarray(self.probability < 1.0)
 
     def total(self, values: Vector, known: Vector) -> tuple[float, Vector]:
-        """Return the total Y and the residuals d_i of the drawn pieces in the order of size, (m,).
+        """Return the total Y and the residuals d_i of the drawn pieces in the order of level, (m,).
 
         Args:
             values: y_s of the chosen pieces; (k,).
@@ -52,7 +52,7 @@ class PieceSample(NamedTuple):
         rest = float(np.sum(known) - np.sum(sizes[~drawn]))
         p, y, x = self.probability[drawn], values[drawn], sizes[drawn]
         ratio, scale = np.sum(y / p) / np.sum(x / p), rest / np.sum(x / p)
-        order = np.argsort(self.sizes[drawn], kind="stable")
+        order = np.argsort(self.levels[drawn], kind="stable")
         return certain + rest * float(ratio), (scale * np.sqrt(1.0 - p) * (y - ratio * x) / p)[order]
 
 
@@ -65,11 +65,12 @@ def half_interval(residuals: Vector) -> float:
     return float(stdtrit(2.0 * (m - 1) ** 2 / (3.0 * m - 4.0), 0.975)) * float(np.sqrt(variance))
 
 
-def sample_pieces(sizes: Vector, count: int, always: npt.NDArray[np.bool_]) -> PieceSample:
+def sample_pieces(sizes: Vector, levels: Vector, count: int, always: npt.NDArray[np.bool_]) -> PieceSample:
     """Return a sample of pieces.
 
     Args:
         sizes: sizes x_j of all pieces, at least 0; (n,).
+        levels: levels l_j of all pieces; (n,).
         count: number m of pieces to draw beside the certain ones.
         always: True for pieces that must be in the sample; (n,).
     """
@@ -83,9 +84,9 @@ def sample_pieces(sizes: Vector, count: int, always: npt.NDArray[np.bool_]) -> P
         certain[rest[large]] = True
     probability[certain if rest.size > count else slice(None)] = 1.0
     if rest.size <= count:
-        return PieceSample(np.arange(sizes.size), probability, sizes)
+        return PieceSample(np.arange(sizes.size), probability, levels)
     # The middle of each of m equal parts of the sum of sizes.
-    order = rest[np.argsort(sizes[rest], kind="stable")]
+    order = rest[np.argsort(levels[rest], kind="stable")]
     drawn = order[np.searchsorted(np.cumsum(probability[order]), np.arange(count) + 0.5)]
     chosen = np.sort(np.concatenate([np.flatnonzero(certain), drawn]))
-    return PieceSample(chosen, probability[chosen], sizes[chosen])
+    return PieceSample(chosen, probability[chosen], levels[chosen])

@@ -39,7 +39,7 @@ def joined_parts(signal: Signal, parts: Sequence[tuple[float, float]]) -> tuple[
         places.append(length + begin - segments[-1][1])
         length += end - segments[-1][1]
         segments[-1][1] = end
-    rise = half_cosine_at(np.arange(fade) * step, BLEND_S)
+    rise = half_cosine_at(np.asarray(np.arange(fade) * step), BLEND_S)
     pieces: list[Vector] = []
     offset, before = 0.0, np.zeros((len(signal.displacement), fade))
     plates = np.stack([*signal.displacement.values()])
