@@ -40,6 +40,7 @@ def profile_study(settings: ShakerSettings, listener: Listener, command: str) ->
     from vehicle.runs.car.car import Car
     from vehicle.runs.car.profile_value import over_profile
     from vehicle.runs.car.road import road_of
+    from vehicle.runs.report.general_notices import without_general
 
     parts = {
         "--video": settings.film.video,
@@ -61,9 +62,10 @@ def profile_study(settings: ShakerSettings, listener: Listener, command: str) ->
     output = settings.destination.folder(Path("runs") / name, protect=protect)
     value = over_profile(car, road, settings.engine, skip=settings.skip)
     listener.accept(value.notices)
+    notices = without_general(value.notices, car.vehicle)
     with output_folder(output, force=settings.destination.force, protect=protect) as folder:
         write_text(folder / FILE, json.dumps(_data(value, command), indent=1) + "\n")
-    return "\n".join([*_lines(value), f"files       {output}: {FILE}"])
+    return "\n".join([*_lines(value), *(f"note        {text}" for text in notices), f"files       {output}: {FILE}"])
 
 
 def _lines(value: ProfileValue) -> list[str]:
@@ -96,5 +98,6 @@ def _data(value: ProfileValue, command: str) -> dict[str, object]:
         "pieces": value.pieces,
         "parts_s": [list(part) for part in value.parts],
         "run_s": value.run.signal.duration,
+        "notices": list(value.notices),
         "values": each,
     }

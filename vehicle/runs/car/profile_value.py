@@ -49,8 +49,8 @@ from vehicle.threads import one_blas_thread
 PIECE_S = 4.0
 """Length of a piece [s]: four periods of a body mode of 1 Hz, twice its lead-in."""
 
-FEWEST = 6
-"""Minimum number of drawn pieces, for 3.6 degrees of freedom of the error."""
+FEWEST = 8
+"""Minimum number of drawn pieces, for 4.9 degrees of freedom of the error."""
 
 USUAL_PRECISION = 1.0
 """Default of half of the 95 % interval of the weighted comfort [%]."""
@@ -222,7 +222,7 @@ class _Survey:
         signal, places = joined_parts(self.signal, parts)
         signal = replace(signal, source=f"{len(parts)} pieces of {self.name}")
         dampers = damper_channels(self.car.vehicle)
-        run = self.car.run(signal, engine, channels=[*self.channels, *dampers], stated_errors=False)
+        run = self.car.run(signal, engine, channels=[*self.channels, *dampers])
         spans = [
             slice(begin := round(place / self.step), begin + span.stop - span.start)
             for place, span in zip(places, chosen, strict=True)

@@ -59,7 +59,6 @@ def joined_parts(signal: Signal, parts: Sequence[tuple[float, float]]) -> tuple[
             time=uniform_time(samples=rows.shape[1], timestep=step),
             displacement=dict(zip(signal.displacement, rows, strict=True)),
             profile={},
-            notices=(),
         ),
         [place * step for place in places],
     )
