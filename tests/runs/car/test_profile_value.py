@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.benchmarks.profile_pieces import made_profile, of_whole
 from tests.validation import validated
 from vehicle import Car, over_profile, road
 from vehicle.commands.shaker import main as shaker
@@ -14,48 +15,17 @@ from vehicle.commands.sweep import main as sweep
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import profile_value
 from vehicle.runs.car.profile_value import FEWEST, ProfileValue
-from vehicle.signals.excitation.iso_road import IsoRoad
-
-LENGTH, STEP = 2000.0, 0.1
-
-
-def profile(file: Path, seed: int, bumps: int = 0) -> Path:
-    """Write a profile whose level rises from class B to C, with single bumps and holes of 10 to 30 mm."""
-    count, rng = round(LENGTH / STEP) + 1, np.random.default_rng(seed)
-    x = STEP * np.arange(count)
-    surface = IsoRoad(level=16e-6, seed=seed, track=1.5, quadruples=False)
-    level = np.interp(x / LENGTH, [0.0, 0.3, 0.6, 1.0], [1.0, 1.0, 4.0, 4.0]) if not bumps else np.full(count, 4.0)
-    tracks = {side: np.sqrt(level) * surface.height(0.0, STEP, count, side, 4.0) for side in ("left", "right")}
-    for place, length, height in zip(
-        rng.uniform(100.0, LENGTH - 100.0, bumps), rng.uniform(0.5, 1.2, bumps), rng.uniform(0.01, 0.03, bumps),
-        strict=True,
-    ):  # fmt: skip
-        side = ("left", "right")[rng.integers(2)]
-        tracks[side] += rng.choice([-1.0, 1.0]) * height * np.sin(np.pi * np.clip((x - place) / length, 0.0, 1.0)) ** 2
-    columns = np.column_stack([x, tracks["left"], tracks["right"]])
-    np.savetxt(file, columns, delimiter=",", header="distance [m],left [m],right [m]", comments="", fmt="%.8g")
-    return file
 
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("profiles")
-    return {"rising": profile(folder / "rising.csv", 1), "bumps": profile(folder / "bumps.csv", 2, bumps=4)}
+    return {kind: made_profile(folder / f"{kind}.csv", kind, 2, 2000.0) for kind in ("rising", "bumps")}
 
 
 @pytest.fixture(scope="module")
 def sedan() -> Car:
     return Car.load("sedan")
-
-
-def of_whole(car: Car, file: Path) -> dict[str, float]:
-    """Return the values of a run over the whole profile."""
-    run = car.run(road(file, 80), "reduced", stated_errors=False)
-    loads = {
-        f"tyre_load_{wheel}": float(np.sqrt(np.mean((run[f"tyre_{wheel}_force_z"] - load)[run.evaluated] ** 2)))
-        for wheel, load in run.car.static.tyre_load.items()
-    }
-    return {**run.comfort().values, **loads}
 
 
 def misses(value: ProfileValue, whole: dict[str, float]) -> dict[str, float]:
@@ -89,7 +59,7 @@ def test_a_car_without_friction_is_nearly_its_twin(files: dict[str, Path]):
 
 
 def test_more_pieces_for_a_higher_precision_and_all_of_them_without_an_error(files: dict[str, Path], sedan: Car):
-    coarse, fine, exact = (over_profile(sedan, road(files["bumps"], 80, precision=p)) for p in (3.0, 0.8, 1e-3))
+    coarse, fine, exact = (over_profile(sedan, road(files["bumps"], 80, precision=p)) for p in (3.0, 0.4, 1e-3))
     assert FEWEST == len(coarse.parts) < len(fine.parts) <= len(exact.parts) == exact.pieces
     assert set(exact.half_intervals.values()) == {0.0} and "±" not in exact.text("weighted")
     whole = of_whole(sedan, files["bumps"])
@@ -99,7 +69,7 @@ def test_more_pieces_for_a_higher_precision_and_all_of_them_without_an_error(fil
 
 def test_a_piece_in_which_a_tyre_lifts_is_always_run(tmp_path: Path, sedan: Car):
     """A hole of 60 mm in a smooth road: the linear car would pull, so its piece is run."""
-    file = profile(tmp_path / "hole.csv", 3)
+    file = made_profile(tmp_path / "hole.csv", "rising", 3, 2000.0)
     x, left, right = np.loadtxt(file, delimiter=",", skiprows=1).T
     left, right = 0.3 * left, 0.3 * right - 0.06 * np.sin(np.pi * np.clip((x - 1000.0) / 0.8, 0.0, 1.0)) ** 2
     np.savetxt(file, np.column_stack([x, left, right]), delimiter=",", header="distance [m],left [m],right [m]",
