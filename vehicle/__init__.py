@@ -62,7 +62,6 @@ if TYPE_CHECKING:
     from vehicle.runs.car.car_data import CarData as CarData
     from vehicle.runs.car.order_points import OrderPoints as OrderPoints
     from vehicle.runs.car.order_points import order_points as order_points
-    from vehicle.runs.car.profile_value import ProfileValue as ProfileValue
     from vehicle.runs.car.profile_value import over_profile as over_profile
     from vehicle.runs.car.road import Road as Road
     from vehicle.runs.car.road import road as road
@@ -121,7 +120,6 @@ _MODULES = {
     "MountFit": "vehicle.studies.mounts.mount_fit",
     "OrderPoints": "vehicle.runs.car.order_points",
     "OutputError": "vehicle.errors",
-    "ProfileValue": "vehicle.runs.car.profile_value",
     "RecordComfort": "vehicle.signals.records.record_comfort",
     "Road": "vehicle.runs.car.road",
     "Run": "vehicle.runs.car.run",
