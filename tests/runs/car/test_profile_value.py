@@ -67,17 +67,18 @@ def test_more_pieces_for_a_higher_precision_and_all_of_them_without_an_error(fil
     assert exact.values["weighted"] == pytest.approx(whole["weighted"], rel=1e-3)
 
 
-def test_a_piece_in_which_a_tyre_lifts_is_always_run(tmp_path: Path, sedan: Car):
-    """A hole of 60 mm in a smooth road: the linear car would pull, so its piece is run."""
-    file = made_profile(tmp_path / "hole.csv", "rising", 3, 2000.0)
-    x, left, right = np.loadtxt(file, delimiter=",", skiprows=1).T
-    left, right = 0.3 * left, 0.3 * right - 0.06 * np.sin(np.pi * np.clip((x - 1000.0) / 0.8, 0.0, 1.0)) ** 2
-    np.savetxt(file, np.column_stack([x, left, right]), delimiter=",", header="distance [m],left [m],right [m]",
-               comments="", fmt="%.8g")  # fmt: skip
-    value = over_profile(sedan, road(file, 80, precision=5))
-    assert any(begin < 1000.0 / (80.0 / 3.6) < end for begin, end in value.parts)
-    found = misses(value, of_whole(sedan, file))
-    assert found["weighted"] < 1.0 and found["tyre_load_fr"] < 1.0
+def test_pieces_in_which_a_tyre_lifts_are_always_run(files: dict[str, Path], monkeypatch: pytest.MonkeyPatch):
+    """A limit of 0 in place of 3 % of the time: all pieces in which a tyre of the whole run pulls by 500 N."""
+    car = Car.load("focus_road")
+    few = over_profile(car, road(files["rising"], 80, precision=90))
+    monkeypatch.setattr(profile_value, "MOST_LIFTED", 0.0)
+    more = over_profile(car, road(files["rising"], 80, precision=90))
+    run = car.run(road(files["rising"], 80), "reduced", channels=[f"tyre_{w}_force_z" for w in few.run.signal.wheels])
+    pulling = np.any([run[name] < -500.0 for name in run.channels if name.startswith("tyre_")], axis=0)
+    times = run.time[pulling & (run.time >= run.skip)]
+    assert times.size and FEWEST == len(few.parts) < len(more.parts)
+    assert all(any(begin <= time <= end for begin, end in more.parts) for time in times.tolist())
+    assert not all(any(begin <= time <= end for begin, end in few.parts) for time in times.tolist())
 
 
 def test_both_engines(files: dict[str, Path], monkeypatch: pytest.MonkeyPatch):
