@@ -39,7 +39,7 @@ from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.piece_sample import PieceSample, half_interval, sample_pieces
 from vehicle.signals.analysis.ride_comfort import SEAT_PREFIX, SEAT_VALUE, UNWEIGHTED, WEIGHTED, comfort_units
-from vehicle.signals.analysis.samples import lines_in_band
+from vehicle.signals.analysis.samples import band_shares
 from vehicle.signals.analysis.seat_value import weighted_axes
 from vehicle.signals.excitation.joined_parts import LEAD_S, joined_parts
 from vehicle.signals.excitation.road_drive import RoadDrive, evaluated_from
@@ -285,8 +285,8 @@ class _Survey:
         for prefix, point in self.points.items():
             xyz = np.stack([rows[f"{point}_acc_{axis}"] for axis in AXES])
             lines = np.fft.rfft(xyz, axis=1)
-            inside = lines_in_band(np.fft.rfftfreq(xyz.shape[1], self.step), COMFORT_BAND)
-            lines[:, ~inside] = 0.0
+            frequency = np.fft.rfftfreq(xyz.shape[1], self.step)
+            lines *= np.sqrt(band_shares(frequency, frequency[1], COMFORT_BAND))
             in_band = np.fft.irfft(lines, xyz.shape[1], axis=1)
             for name, axes, factors in (
                 (UNWEIGHTED, in_band, (1.0, 1.0, 1.0)),
