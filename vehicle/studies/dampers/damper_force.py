@@ -25,6 +25,7 @@ from vehicle.arrays import Mask, Vector
 from vehicle.core.library import core
 from vehicle.core.records import packed
 from vehicle.studies.dampers.damper_law import EXPONENT, SOFT_STEP, STEP, DamperLaw, DamperValues, values_of
+from vehicle.studies.dampers.damper_setting import Setting
 
 Counts = npt.NDArray[np.intp]
 
@@ -43,6 +44,7 @@ class Motion:
     # steps of the solution of a series stiffness from each sample to the next, on the cubic through displacements and
     # velocities; (n - 1,), or 1 for all
     parts: Counts | int = 1
+    setting: Setting | None = None  # condition that changes during the test
 
     @cached_property
     def refined(self) -> tuple[Motion, Counts]:
@@ -70,6 +72,8 @@ def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tupl
     Args:
         parameters: in the order of `law.parameters`, SI units; with widths and excess, see `plain_parameters`; (p,).
     """
+    if law.setting:
+        return _mixed(law, parameters, motion)
     values = values_of(law, parameters)
     if not law.series:
         return _rigid(law, values, motion)
@@ -77,6 +81,24 @@ def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tupl
     deflection, inner, sticking = _march(values, fine)
     columns = _slopes(law, values, fine, deflection, inner, sticking)
     return values.series * deflection[rows], columns[rows]
+
+
+def _mixed(law: DamperLaw, parameters: Vector, motion: Motion) -> tuple[Vector, Vector]:
+    """Return force and derivatives of a soft and a firm law with a changing setting, see `damper_setting`."""
+    assert motion.setting is not None
+    names, numbers = list(law.parameters), dict(zip(law.parameters, parameters.tolist(), strict=True))
+    theta, *slopes = motion.setting.shares(numbers["lag"], numbers.get("delay", 0.0), numbers.get("saturation", 1.0))
+    columns = np.zeros((theta.size, len(names)))
+    forces = []
+    for share, half in zip((1.0 - theta, theta), law.halves, strict=True):
+        force, of_half = force_and_slopes(law.passive, parameters[half], motion)
+        forces.append(force)
+        columns[:, half] += share[:, None] * of_half
+    change = forces[1] - forces[0]
+    for name, slope in zip(("lag", "delay", "saturation"), slopes, strict=True):
+        if name in names:
+            columns[:, names.index(name)] = change * slope
+    return forces[0] + theta * change, columns
 
 
 def _curve(values: DamperValues, step_width: float) -> tuple[list[float], list[float], list[float]]:

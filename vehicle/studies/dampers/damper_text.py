@@ -12,7 +12,7 @@ from vehicle.signals.formats.csv_table import table_text
 from vehicle.studies.dampers.damper_choice import WORST
 from vehicle.studies.dampers.damper_fit import DamperFit
 from vehicle.studies.dampers.damper_force import steady_force
-from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
+from vehicle.studies.dampers.damper_law import EXPONENT, SETTING, SMOOTHING, values_of
 from vehicle.studies.dampers.damper_ranges import RATIO, Expected, expected_error
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
@@ -59,7 +59,7 @@ def candidates(fitted: FittedDamper) -> list[Candidate]:
     shown = [
         fit
         for number_of_law, fit in enumerate(fitted.compared)
-        if number_of_law < SHOWN_LAWS or fit.law == fitted.fit.law
+        if number_of_law < SHOWN_LAWS or fit.tested_law == fitted.fit.tested_law
     ]
     rows = []
     for fit in shown:
@@ -71,7 +71,7 @@ def candidates(fitted: FittedDamper) -> list[Candidate]:
 
 def _range_error(fit: DamperFit, name: str) -> tuple[float, float]:
     """Return the RMS error in a range over all tests, without the range in the fit and with it; NaN if unknown."""
-    squares = fit.ranges.get(name, np.full((2, 1), np.nan)) ** 2
+    squares = fit.ranges.get(name, np.full((2, 1), np.nan))[:2] ** 2
     inside = ~np.isnan(squares[0])
     return tuple(np.sqrt(np.mean(squares[:, inside], axis=1)).tolist()) if inside.any() else (math.nan, math.nan)
 
@@ -239,7 +239,7 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
     errors = zip(fitted.tests, fit.fitted.tolist(), fit.left_out.tolist(), fit.whole.tolist(), strict=True)
     return {
         "conditions": dict(fitted.conditions),
-        "chosen": fit.law.title,
+        "chosen": fit.tested_law.title,
         "parameters": [
             {
                 "path": f"damper.{name}",
@@ -262,7 +262,11 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             for test, inside, outside, whole in errors
         ],
         "candidates": [
-            {"law": each.fit.law.title, "parameters": len(each.fit.law.parameters), "accepted": each.fit.accepted}
+            {
+                "law": each.fit.tested_law.title,
+                "parameters": len(each.fit.tested_law.parameters),
+                "accepted": each.fit.accepted,
+            }
             | {name: _or_none(getattr(each, name)) for name in ("left_out", "slower", "faster", "below", "above")}
             for each in candidates(fitted)
         ],
@@ -274,6 +278,10 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             for text, (usual, limit) in expected_rows(fitted)
         ],
         "next_test": next_test(fitted),
+        "setting": [
+            {"name": name, "value": value, "standard_error": _or_none(error), "unit": unit}
+            for name, unit, value, error in setting_rows(fitted)
+        ],
         "not_determined": fitted.left_open(),
         "notices": [f"{test.name}: {text}" for test in fitted.tests for text in test.notices],
     }
@@ -282,6 +290,15 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
 def _or_none(value: float) -> float | None:
     """Return a finite number, or None."""
     return value if math.isfinite(value) else None
+
+
+def setting_rows(fitted: FittedDamper) -> list[tuple[str, str, float, float]]:
+    """Return name, unit, value and standard error of lag, saturation and delay of a changing condition."""
+    fit = fitted.changing
+    if fit is None:
+        return []
+    rows = zip(fit.law.parameters.items(), fit.values.tolist(), fit.errors.tolist(), strict=True)
+    return [(*name, value, error) for name, value, error in rows if name[0] in SETTING]
 
 
 def tests_text(fits: Sequence[FittedDamper]) -> str:
@@ -294,11 +311,17 @@ def tests_text(fits: Sequence[FittedDamper]) -> str:
             sizes = [1e3 * np.ptp(test.displacement), 1e3 * np.max(np.abs(test.velocity)), test.scale]
             conditions = [str(test.conditions.get(name, "")) for name in names]
             rows.append([test.name, *conditions, *(f"{value:.4g}" for value in [*sizes, inside, outside, whole])])
-    return table_text(rows)
+    return table_text(list(map(list, dict.fromkeys(map(tuple, rows)))))
 
 
-def summary_lines(fitted: FittedDamper) -> list[str]:
-    """Return the printed summary: laws with their errors on tests left out, tests, parameters, what is left open."""
+def summary_lines(fitted: FittedDamper, again: bool = False) -> list[str]:
+    """Return the printed summary: laws with their errors on tests left out, tests, parameters, what is left open.
+
+    Args:
+        again: print the parameters only; the rest is that of the law before, fitted to the same tests.
+    """
+    if again:
+        return [caption_of(fitted), *parameter_lines(fitted)]
     fit = fitted.fit
     lines = [caption_of(fitted), *(f"notice: {text}" for text in notice_lines(fitted))]
     slow, fast = (number(1e3 * speed, 2) for speed in (fitted.speeds[0] / RATIO, RATIO * fitted.speeds[1]))
@@ -309,9 +332,9 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
     for each in candidates(fitted):
         errors = "".join(f"{_or_dash(value, 3):>8}" for value in (each.slower, each.faster))
         forces = "".join(f"{number(force, 3) + ' N':>14}" for force in (each.below, each.above))
-        law = each.fit.law
+        law = each.fit.tested_law
         lines.append(f"{each.left_out:>9.4f}{errors}{forces}{len(law.parameters):>11}  {law.title}")
-    lines.append(f"chosen: {fit.law.title}, {choice_sentence(fitted)}")
+    lines.append(f"chosen: {fit.tested_law.title}, {choice_sentence(fitted)}")
     lines.append(f"{'RMS error divided by standard deviation of force':<44}{'fitted':>8}{'left out':>10}{'whole':>8}")
     for test, inside, outside, whole in zip(fitted.tests, fit.fitted, fit.left_out, fit.whole, strict=True):
         lines.append(f"{f'{test.name}: {test.caption}':<44}{inside:>8.3f}{outside:>10.3f}{whole:>8.3f}")
@@ -327,7 +350,15 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
             f"poor fit: an error is above {POOR:g}; check signs and time shifts of the channels, and look at the "
             "pictures"
         )
+    return lines + parameter_lines(fitted)
+
+
+def parameter_lines(fitted: FittedDamper) -> list[str]:
+    """Return the printed parameters with their standard errors, and what is left open."""
+    fit, lines = fitted.fit, []
     lines.append(f"{'parameter':<22}{'value':>12}   standard error")
     for (name, unit), value, error in zip(fit.law.parameters.items(), fit.values, fit.errors, strict=True):
         lines.append(f"{name:<22}{value:>12.5g}   {number(error, 2)} {unit}")
+    for name, unit, value, error in setting_rows(fitted):
+        lines.append(f"{f'{name} of the setting':<22}{value:>12.5g}   {number(error, 2)} {unit}")
     return lines + [f"not determined: {sentence}" for sentence in fitted.left_open()]
