@@ -43,6 +43,8 @@ RANGES = {
     "slider_stroke": (5e-6, 0.05),
     "gas_stiffness": (0.0, 1e6),
     "series_stiffness": (1e4, 1e9),
+    "gap": (1e-5, 0.1),
+    "outer_friction": (0.1, 1e5),
     "gas_force": (-1e5, 1e5),
     "lag": (1e-4, 10.0),
     "saturation": (0.05, 20.0),

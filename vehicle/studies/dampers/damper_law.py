@@ -3,11 +3,16 @@
 In extension positive, with the displacement x, the deflection s of a series stiffness K and the velocity w = x' - s' of
 the damper itself,
 
-    F = K s = F_c(w) + friction + k_g (x - s) + F_0.
+    F = K s = F_c(w) + friction + k_g (x - s) + F_0,
+
+With a gap g in series and a Coulomb friction F_o parallel to all,
+
+    F = K e(s) + F_o sgn x',   e = s - g/2 for s > g/2, s + g/2 for s < -g/2, otherwise zero.
 
 F_c has straight segments: slope c_j up to the velocity v_j, alike or separate on both sides. The friction is Coulomb
 friction, a step of F_c within `STEP`; Stribeck friction; or presliding, Jenkins elements over x - s. F_0 is minus the
-gas force, k_g the stiffness of the gas. All are laws of the vehicle file (`vehicle.studies.dampers.damper_lines`).
+gas force, k_g the stiffness of the gas. All but the gap are laws of the vehicle file
+(`vehicle.studies.dampers.damper_text`).
 """
 
 from __future__ import annotations
@@ -58,6 +63,7 @@ class DamperLaw:
     friction: str = ""  # "", "coulomb", "stribeck" or "presliding"
     elements: int = 0  # Jenkins elements of presliding
     series: bool = False  # a stiffness in series with the damper
+    gap: bool = False  # a gap (backlash) in series with both, and Coulomb friction parallel to all
     gas_stiffness: bool = False  # a stiffness parallel to the damper
     # condition that changes during the tests: "", "lag" (soft and firm law, lag) or "saturating", see `damper_setting`
     setting: str = ""
@@ -101,7 +107,8 @@ class DamperLaw:
         for i in range(self.elements):
             names |= {f"slider_limit_{i + 1}": "N", f"slider_stroke_{i + 1}": "m"}
         names |= {"gas_stiffness": "N/m"} if self.gas_stiffness else {}
-        return names | ({"series_stiffness": "N/m"} if self.series else {})
+        names |= {"series_stiffness": "N/m"} if self.series else {}
+        return names | ({"gap": "m", "outer_friction": "N"} if self.gap else {})
 
     @property
     def title(self) -> str:
@@ -112,6 +119,7 @@ class DamperLaw:
         parts += [elements] if self.elements else [f"{self.friction.title()} friction"] if self.friction else []
         parts += ["gas stiffness"] if self.gas_stiffness else []
         parts += ["series stiffness"] if self.series else []
+        parts += ["gap"] if self.gap else []
         parts += [f"{self.setting} setting".replace("lag", "lagging")] if self.setting else []
         return " + ".join(parts + (["delay"] if self.delayed else []))
 
@@ -127,6 +135,8 @@ class DamperLaw:
             yield change(self, own_sides=True)
         if not self.series:
             yield change(self, series=True)
+        elif not self.gap:
+            yield change(self, gap=True)
         if not self.gas_stiffness:
             yield change(self, gas_stiffness=True)
         if not self.friction:
@@ -136,6 +146,7 @@ class DamperLaw:
         if self.elements == 1 and not self.series:
             yield change(self, friction="coulomb", elements=0, series=True)
             yield change(self, friction="stribeck", elements=0, series=True)
+            yield change(self, friction="coulomb", elements=0, series=True, gap=True)
         if self.friction != "stribeck" and self.elements < MAX_ELEMENTS:
             yield change(self, friction="presliding", elements=self.elements + 1)
         if self.setting == "lag":
@@ -150,7 +161,9 @@ class DamperLaw:
             yield change(self, bends=self.bends - 1)
         if self.own_sides:
             yield change(self, own_sides=False)
-        if self.series:
+        if self.gap:
+            yield change(self, gap=False)
+        elif self.series:
             yield change(self, series=False)
         if self.gas_stiffness:
             yield change(self, gas_stiffness=False)
@@ -180,6 +193,8 @@ class DamperValues:
     offset: float  # F_0 [N]
     gas_stiffness: float  # k_g [N/m]
     series: float  # K [N/m]; infinite without
+    gap: float = 0.0  # g [m]
+    outer_friction: float = 0.0  # F_o [N]
 
 
 def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
@@ -200,6 +215,8 @@ def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
         offset=-number["gas_force"],
         gas_stiffness=number.get("gas_stiffness", 0.0),
         series=number.get("series_stiffness", np.inf),
+        gap=number.get("gap", 0.0),
+        outer_friction=number.get("outer_friction", 0.0),
     )
 
 

@@ -28,12 +28,14 @@ def starts_of(law: DamperLaw, smaller: DamperFit, tests: Sequence[DamperTest]) -
     force = max(test.scale for test in tests)
     speed = max(float(np.percentile(np.abs(test.velocity), 95.0)) for test in tests)
     previous = dict(zip(smaller.law.parameters, smaller.parameters.tolist(), strict=True))
+    stroke = min(float(np.ptp(test.displacement)) for test in tests)
     starts = []
     for share in (0.1, 0.4):
         new = {
             "friction": share * force, "friction_at_rest": 0.3 * previous.get("friction", share * force),
             "stribeck_velocity": 0.2 * share * speed, "gas_stiffness": 100.0, "gas_force": previous["gas_force"],
-            "series_stiffness": force / (speed * (3e-4 if share < 0.2 else 5e-3)),
+            "series_stiffness": force / (speed * (3e-4 if share < 0.2 else 5e-3)), "gap": 0.5 * share * stroke,
+            "outer_friction": share * force,
         }  # fmt: skip
         for i in range(law.elements):
             new |= {f"slider_limit_{i + 1}": share * force, f"slider_stroke_{i + 1}": 1e-3 * 4.0**-i}

@@ -9,12 +9,14 @@ import numpy as np
 from vehicle.digits import number, rounded
 from vehicle.model.parameters.tested_range import range_lines
 from vehicle.signals.formats.csv_table import table_text
+from vehicle.studies.dampers.damper_band import stored_band
 from vehicle.studies.dampers.damper_choice import WORST
 from vehicle.studies.dampers.damper_fit import DamperFit
 from vehicle.studies.dampers.damper_force import steady_force
 from vehicle.studies.dampers.damper_law import EXPONENT, SETTING, SMOOTHING, values_of
 from vehicle.studies.dampers.damper_ranges import RATIO, Expected, expected_error
 from vehicle.studies.dampers.fitted_damper import FittedDamper
+from vehicle.studies.dampers.residual_diagnosis import missing_text
 
 SLIP = 0.006
 """Velocity above which a damper counts as slipping [m/s], as in the shipped cars; no test shows it."""
@@ -170,7 +172,14 @@ def vehicle_lines(fitted: FittedDamper) -> str:
                      f"# stiffness of the gas, {values.gas_stiffness:.4g} N/m, standard error "
                      f"{number(spread['gas_stiffness'], 2)} N/m; add the bump stops of the car, "
                      "which the errors of this fit do not contain")  # fmt: skip
-    lines += range_lines(fitted.tested)
+    # Without a fit (`finished`) there are no covariances and no band.
+    lines += range_lines(fitted.tested | (stored_band(fitted) if fit.spreads.size else {}))
+    if law.gap:
+        lines.append(
+            f"# gap {1e3 * values.gap:.4g} mm, standard error {number(1e3 * spread['gap'], 2)} mm, in series with "
+            f"these lines, and {values.outer_friction:.4g} N of friction beside it: the vehicle file has no such "
+            "element, and the errors of the tests do not hold for these lines"
+        )
     if law.series:
         lines += [
             f"# series stiffness {values.series:.4g} N/m, standard error {number(spread['series_stiffness'], 2)} N/m:",
@@ -278,6 +287,7 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             for text, (usual, limit) in expected_rows(fitted)
         ],
         "next_test": next_test(fitted),
+        "missing": missing_text(fitted),
         "setting": [
             {"name": name, "value": value, "standard_error": _or_none(error), "unit": unit}
             for name, unit, value, error in setting_rows(fitted)
@@ -345,6 +355,8 @@ def summary_lines(fitted: FittedDamper, again: bool = False) -> list[str]:
     lines += [f"{text:<52}{usual:>8.3f}{_or_dash(limit, 3):>20}" for text, (usual, limit) in expected_rows(fitted)]
     if further := next_test(fitted):
         lines.append(f"next: {further}")
+    if missing := missing_text(fitted):
+        lines.append(f"missing: {missing}")
     if float(np.max(fit.fitted)) > POOR:
         lines.append(
             f"poor fit: an error is above {POOR:g}; check signs and time shifts of the channels, and look at the "

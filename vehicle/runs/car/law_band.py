@@ -1,0 +1,73 @@
+"""Cars with the edges of the band of their fitted dampers: the softest and the firmest law that the tests allow.
+
+The band is stored with the law (`tested.band_velocity`, `band_soft`, `band_firm`: changes of the force in its
+direction). At an edge, the friction limit takes the change at the lowest velocity of the band, the mean of both sides
+and at least to zero; the curve takes the rest, straight between the velocities and to zero at rest, as a table that
+does not fall with the velocity. Beyond the band the last slope continues.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from vehicle.digits import rounded
+from vehicle.errors import ConfigurationError
+from vehicle.model.laws.damper import damper_curve
+from vehicle.model.parameters.force_elements import Damper
+from vehicle.model.parameters.tested_range import TestedRange
+
+EDGES = ("soft", "firm")
+"""Edges of a band."""
+
+
+def edge_overrides(dampers: dict[str, Damper], edge: str) -> dict[str, Any]:
+    """Return the parameters of a car with the edge of the band of all its dampers that have one.
+
+    Args:
+        dampers: path in the vehicle file, for example "front.damper", to the law.
+        edge: "soft" or "firm".
+
+    Raises:
+        ConfigurationError: no damper has a band, or a damper with a band has a control or a function for its curve.
+    """
+    banded = {path: law for path, law in dampers.items() if law.tested is not None and law.tested.band_velocity}
+    if not banded:
+        raise ConfigurationError(
+            f"law band: none of the dampers {', '.join(dampers)} has a band; fit one with fit-damper and take over all "
+            "lines of its damper.toml, tested.band_velocity and the next two included"
+        )
+    values: dict[str, Any] = {}
+    for path, law in banded.items():
+        if law.controlled or law.function is not None or law.friction_function is not None:
+            raise ConfigurationError(
+                f"{path}: has a band, but a control or a function replaces its law; remove tested.band_velocity, "
+                "band_soft and band_firm"
+            )
+        assert law.tested is not None
+        velocity, force, friction = edge_of(law, law.tested, edge)
+        values |= {f"{path}.viscous_law": "table", f"{path}.velocity": velocity, f"{path}.force": force}
+        values[f"{path}.coulomb_friction"] = friction
+        if law.static_friction is not None and law.friction_law == "stribeck":
+            values[f"{path}.stribeck_friction"] = rounded(law.static_friction + friction - law.coulomb_friction, 6)
+    return values
+
+
+def edge_of(law: Damper, tested: TestedRange, edge: str) -> tuple[list[float], list[float], float]:
+    """Return velocities [m/s] and forces [N] of the curve at an edge, and its friction limit [N]."""
+    velocity = np.array(tested.band_velocity)
+    change = np.array(tested.band_soft if edge == "soft" else tested.band_firm)
+    order = np.argsort(np.abs(velocity), kind="stable")
+    friction = max(law.coulomb_friction + float(np.mean(change[order[:2]])), 0.0)
+    rest = np.sign(velocity) * (change - (friction - law.coulomb_friction))
+    curve = damper_curve(law)
+    # No bend within the band at rest: there the change is straight between both sides.
+    places = np.unique([*velocity, *curve.knots, 0.0])
+    shift = np.interp(places, [*velocity[velocity < 0.0], 0.0, *velocity[velocity > 0.0]],
+                      [*rest[velocity < 0.0], 0.0, *rest[velocity > 0.0]])  # fmt: skip
+    force = curve.force(places) + shift
+    # The curve of the vehicle file does not fall with the velocity.
+    rest_at = int(np.searchsorted(places, 0.0))
+    force[rest_at:] = np.maximum.accumulate(force[rest_at:])
+    force[: rest_at + 1] = np.minimum.accumulate(force[rest_at::-1])[::-1]
+    forces = [rounded(float(each), 7) for each in force]
+    return [rounded(float(each), 7) for each in places], forces, rounded(friction, 6)
