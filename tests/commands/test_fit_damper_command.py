@@ -116,7 +116,7 @@ LAWS = {
 def test_the_next_test_is_where_the_error_is_largest(tmp_path, monkeypatch, name, words):
     """Errors of 0.3 in one range: by velocity sqrt(0.1^2 + 0.3^2) = 0.32 is expected, by amplitude 0.3 was left out."""
     monkeypatch.setattr("vehicle.studies.dampers.damper_ranges._bend_beyond", lambda *_: (0.0, 0.0))
-    ranges = {each: np.zeros((3, 2)) for each in ("slower", "faster", "smaller", "larger")}
+    ranges = {each: np.zeros((2, 2)) for each in ("slower", "faster", "smaller", "larger")}
     if name:
         ranges[name][0] = 0.3
     fit = DamperFit(law=DamperLaw(), parameters=np.array([150.0, 1200.0]), left_out=np.full(2, 0.1), ranges=ranges)

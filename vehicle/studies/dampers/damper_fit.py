@@ -73,6 +73,7 @@ class DamperFit:
     tolerance: float = np.nan  # of the logarithm of the error left out, in the choice of this law
     # errors of ranges that the fit does not contain, see `damper_choice.range_errors`: range to (tests,)
     ranges: Mapping[str, Vector] = field(default_factory=dict)
+    systematic: float = np.inf  # RMS of the systematic part of the residuals, over the standard deviation of the force
     half_of: DamperLaw | None = None  # law with a changing setting, of which this is the soft or the firm one
 
     @property
@@ -201,11 +202,17 @@ def fitted_squares(tests: Sequence[DamperTest], law: DamperLaw, parameters: Vect
 def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
     """Return a fit of all samples, with standard errors and the errors of each test."""
     parameters = fit_law(tests, fit.law, [fit.parameters], tolerance=1e-7)
+    # Neighbours have independent noise: their mean product is the square of what they have in common.
+    common = [
+        np.mean(rest[1:] * rest[:-1])
+        for rest in ((fit.force(test)[test.settled] - test.force[test.settled]) / test.scale for test in tests)
+    ]
     spreads = covariances(tests, fit.law, parameters)
     squares = squares_of(tests, fit.law, parameters)
     return dataclasses.replace(
-        fit, parameters=parameters, spreads=spreads, errors=deviations(spreads, sums_of(fit.law)),
-        fitted=np.sqrt(fitted_squares(tests, fit.law, parameters)), whole=np.sqrt([np.mean(each) for each in squares]),
+        fit, parameters=parameters, spreads=spreads, systematic=float(np.sqrt(max(np.mean(common), 0.0))),
+        errors=deviations(spreads, sums_of(fit.law)), fitted=np.sqrt(fitted_squares(tests, fit.law, parameters)),
+        whole=np.sqrt([np.mean(each) for each in squares]),
     )  # fmt: skip
 
 

@@ -73,7 +73,7 @@ def candidates(fitted: FittedDamper) -> list[Candidate]:
 
 def _range_error(fit: DamperFit, name: str) -> tuple[float, float]:
     """Return the RMS error in a range over all tests, without the range in the fit and with it; NaN if unknown."""
-    squares = fit.ranges.get(name, np.full((2, 1), np.nan))[:2] ** 2
+    squares = fit.ranges.get(name, np.full((2, 1), np.nan)) ** 2
     inside = ~np.isnan(squares[0])
     return tuple(np.sqrt(np.mean(squares[:, inside], axis=1)).tolist()) if inside.any() else (math.nan, math.nan)
 
