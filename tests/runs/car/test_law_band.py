@@ -46,6 +46,15 @@ def test_the_edges_have_the_force_of_the_band():
         assert np.all(np.diff(other.force) >= 0.0)
 
 
+def test_the_band_of_some_velocities_leaves_the_others():
+    car = banded()
+    law = car.vehicle.composition.dampers[0].law
+    velocity = np.array(LAW["tested.band_velocity"])
+    (soft, _) = car.law_band(velocities=(0.05, 0.2))
+    change = np.sign(velocity) * (force(soft.vehicle.composition.dampers[0].law, velocity) - force(law, velocity))
+    assert change == pytest.approx([0.0, -30.0, 0.0, 0.0, -30.0, 0.0], abs=1e-6)
+
+
 def test_both_engines_agree_at_the_edges():
     drive, car = road("B", 80, duration=4), banded()
     comfort = {}

@@ -44,7 +44,7 @@ def record(path, duration=4.0):
 
 def test_the_setting_follows_its_condition_with_lag_and_delay():
     """Against an integration of the equation of the lag, with a condition that is straight between its samples."""
-    rng, time = np.random.default_rng(3), np.arange(60) * 1e-3
+    rng, time = np.random.default_rng(3), np.linspace(0.0, 0.059, 60)
     values = rng.uniform(0.0, 2.0, time.size)
     setting = Setting(name="current", time=time, values=values, lowest=0.0, highest=2.0)
 

@@ -38,7 +38,6 @@ from vehicle.model.parameters.vehicle import Vehicle, load_file, load_vehicle, v
 from vehicle.model.parameters.vehicle_variants import VehicleVariants
 from vehicle.model.parameters.whole_body import restated
 from vehicle.runs.car.given_forces import GivenForce, with_histories
-from vehicle.runs.car.law_band import EDGES, edge_overrides
 from vehicle.runs.car.linear_response import force_frf, is_stuck, plate_frf
 from vehicle.runs.car.origin import Origin
 from vehicle.runs.car.outside_tests import with_range_notice
@@ -113,17 +112,6 @@ class Car(SteadyCar):
         car.origin = {"file": self.origin["file"], "overrides": list(car.overrides)}
         car._base, car._step = self, tuple(more)
         return car
-
-    def law_band(self) -> tuple[Car, Car]:
-        """Return this car with the softest and with the firmest dampers that their tests allow.
-
-        The band of a damper is in the lines that `fit-damper` writes, for example `front.damper.tested.band_soft`
-        (`vehicle.runs.car.law_band`); all dampers with a band change together. A `ConfigurationError` is raised if no
-        damper has one.
-        """
-        dampers = {damper.path: damper.law for damper in self.vehicle.composition.dampers}
-        soft, firm = (self.with_(edge_overrides(dampers, edge)) for edge in EDGES)
-        return soft, firm
 
     def with_channel(self, name: str, at: str | Sequence[float], *, on: str = "body") -> Car:
         """Return this car with a further output point: channels `NAME_acc_x`, `_y`, `_z`.

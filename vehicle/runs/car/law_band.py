@@ -6,7 +6,10 @@ and at least to zero; the curve takes the rest, straight between the velocities 
 does not fall with the velocity. Beyond the band the last slope continues.
 """
 
-from typing import Any
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,16 +19,22 @@ from vehicle.model.laws.damper import damper_curve
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.tested_range import TestedRange
 
+if TYPE_CHECKING:
+    from vehicle.runs.car.car import Car
+
 EDGES = ("soft", "firm")
 """Edges of a band."""
 
 
-def edge_overrides(dampers: dict[str, Damper], edge: str) -> dict[str, Any]:
+def edge_overrides(
+    dampers: Mapping[str, Damper], edge: str, velocities: tuple[float, float] = (0.0, np.inf)
+) -> dict[str, Any]:
     """Return the parameters of a car with the edge of the band of all its dampers that have one.
 
     Args:
         dampers: path in the vehicle file, for example "front.damper", to the law.
         edge: "soft" or "firm".
+        velocities: lowest and highest speed [m/s] with the band; at other speeds the force of the law remains.
 
     Raises:
         ConfigurationError: no damper has a band, or a damper with a band has a control or a function for its curve.
@@ -44,7 +53,7 @@ def edge_overrides(dampers: dict[str, Damper], edge: str) -> dict[str, Any]:
                 "band_soft and band_firm"
             )
         assert law.tested is not None
-        velocity, force, friction = edge_of(law, law.tested, edge)
+        velocity, force, friction = edge_of(law, law.tested, edge, velocities)
         values |= {f"{path}.viscous_law": "table", f"{path}.velocity": velocity, f"{path}.force": force}
         values[f"{path}.coulomb_friction"] = friction
         if law.static_friction is not None and law.friction_law == "stribeck":
@@ -52,22 +61,43 @@ def edge_overrides(dampers: dict[str, Damper], edge: str) -> dict[str, Any]:
     return values
 
 
-def edge_of(law: Damper, tested: TestedRange, edge: str) -> tuple[list[float], list[float], float]:
+def edge_of(
+    law: Damper, tested: TestedRange, edge: str, velocities: tuple[float, float]
+) -> tuple[list[float], list[float], float]:
     """Return velocities [m/s] and forces [N] of the curve at an edge, and its friction limit [N]."""
     velocity = np.array(tested.band_velocity)
     change = np.array(tested.band_soft if edge == "soft" else tested.band_firm)
+    change = np.where((np.abs(velocity) >= velocities[0]) & (np.abs(velocity) <= velocities[1]), change, 0.0)
     order = np.argsort(np.abs(velocity), kind="stable")
     friction = max(law.coulomb_friction + float(np.mean(change[order[:2]])), 0.0)
-    rest = np.sign(velocity) * (change - (friction - law.coulomb_friction))
+    remaining = np.sign(velocity) * (change - (friction - law.coulomb_friction))
     curve = damper_curve(law)
-    # No bend within the band at rest: there the change is straight between both sides.
-    places = np.unique([*velocity, *curve.knots, 0.0])
-    shift = np.interp(places, [*velocity[velocity < 0.0], 0.0, *velocity[velocity > 0.0]],
-                      [*rest[velocity < 0.0], 0.0, *rest[velocity > 0.0]])  # fmt: skip
-    force = curve.force(places) + shift
+    # The change is straight through zero between the lowest velocities of both sides.
+    speeds = np.unique([*velocity, *curve.knots, 0.0])
+    shift = np.interp(speeds, [*velocity[velocity < 0.0], 0.0, *velocity[velocity > 0.0]],
+                      [*remaining[velocity < 0.0], 0.0, *remaining[velocity > 0.0]])  # fmt: skip
+    force = curve.force(speeds) + shift
     # The curve of the vehicle file does not fall with the velocity.
-    rest_at = int(np.searchsorted(places, 0.0))
-    force[rest_at:] = np.maximum.accumulate(force[rest_at:])
-    force[: rest_at + 1] = np.minimum.accumulate(force[rest_at::-1])[::-1]
+    zero_at = int(np.searchsorted(speeds, 0.0))
+    force[zero_at:] = np.maximum.accumulate(force[zero_at:])
+    force[: zero_at + 1] = np.minimum.accumulate(force[zero_at::-1])[::-1]
     forces = [rounded(float(each), 7) for each in force]
-    return [rounded(float(each), 7) for each in places], forces, rounded(friction, 6)
+    return [rounded(float(each), 7) for each in speeds], forces, rounded(friction, 6)
+
+
+class BandedCar:
+    """Base of `Car`: the edges of the band of its dampers."""
+
+    def law_band(self, velocities: tuple[float, float] = (0.0, np.inf)) -> tuple[Car, Car]:
+        """Return this car with the softest and with the firmest dampers that their tests allow.
+
+        The band of a damper is in the lines of `fit-damper`, for example `front.damper.tested.band_soft`; all dampers
+        with a band change together. A `ConfigurationError` is raised if no damper has one.
+
+        Args:
+            velocities: lowest and highest speed [m/s] with the band; at other speeds the force of the law remains.
+        """
+        car: Any = self
+        dampers = {damper.path: damper.law for damper in car.vehicle.composition.dampers}
+        soft, firm = (car.with_(edge_overrides(dampers, edge, velocities)) for edge in EDGES)
+        return soft, firm

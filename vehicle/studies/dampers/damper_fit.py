@@ -204,8 +204,8 @@ def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
     parameters = fit_law(tests, fit.law, [fit.parameters], tolerance=1e-7)
     # Neighbours have independent noise: their mean product is the square of what they have in common.
     common = [
-        np.mean(rest[1:] * rest[:-1])
-        for rest in ((fit.force(test)[test.settled] - test.force[test.settled]) / test.scale for test in tests)
+        np.mean(residual[1:] * residual[:-1])
+        for residual in ((fit.force(test)[test.settled] - test.force[test.settled]) / test.scale for test in tests)
     ]
     spreads = covariances(tests, fit.law, parameters)
     squares = squares_of(tests, fit.law, parameters)
@@ -254,5 +254,5 @@ def deviations(spreads: Vector, rows: Vector) -> Vector:
 
 
 def parameter_squares(law: DamperLaw, parameters: Vector, spreads: Vector, test: DamperTest) -> Vector:
-    """Return the variance of the force of a test from covariances of the parameters, over that of the force; (n,)."""
+    """Return the variance of the fitted force from the covariances of the parameters, over the measured one; (n,)."""
     return (deviations(spreads, force_and_slopes(law, parameters, test.motion)[1]) / test.scale) ** 2

@@ -66,14 +66,14 @@ class Setting:
         change = of_fade * y[:-1] + of_moved[:-1]
         of_lag = np.concatenate([[0.0], scipy.signal.lfilter([1.0], [1.0, -fade], change)])
         # With the delay, between the samples; before the first sample at rest.
-        place = (self.time - self.time[0] - delay) / step
-        at = np.clip(np.floor(place), 0, count - 1).astype(int)
-        after = np.where(place > 0.0, (place - at) * step, 0.0)
+        position = (self.time - self.time[0] - delay) / step
+        at = np.clip(np.floor(position), 0, count - 1).astype(int)
+        after = np.where(position > 0.0, (position - at) * step, 0.0)
         moved, of_moved = _toward(after, lag, u[at], rise[at])
         fade = np.exp(-after / lag)
         late = fade * y[at] + moved
         of_late = fade * of_lag[at] + fade * after / lag**2 * y[at] + of_moved
-        rate = np.where(place > 0.0, (u[at] + rise[at] * after - late) / lag, 0.0)
+        rate = np.where(position > 0.0, (u[at] + rise[at] * after - late) / lag, 0.0)
         return late, of_late, -rate
 
 

@@ -328,7 +328,7 @@ def summary_lines(fitted: FittedDamper, again: bool = False) -> list[str]:
     """Return the printed summary: laws with their errors on tests left out, tests, parameters, what is left open.
 
     Args:
-        again: print the parameters only; the rest is that of the law before, fitted to the same tests.
+        again: print the parameters only, after the other law for the same tests.
     """
     if again:
         return [caption_of(fitted), *parameter_lines(fitted)]

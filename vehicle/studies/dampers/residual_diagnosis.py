@@ -1,4 +1,4 @@
-"""What the rest of the force, measured minus fitted, says about a mechanism that the law does not have.
+"""Mechanism that a law does not have, from the rest of the force, measured minus fitted.
 
 The rest r over the standard deviation of the force, and its product with the direction sgn v, are compared with their
 means in bins of equal numbers of samples. A mechanism explains the share of the variance that its bins take away,
@@ -9,7 +9,7 @@ after the bins without it:
     frequency     r sgn v over the speed, each test apart, after bins of the speed
     asymmetry     r over the speed
 
-The largest share counts, from `LEAST` on. The distance of a gap is that of the largest change between two bins.
+The largest share counts, from `LEAST` on. A gap is where the largest change between two bins occurs.
 """
 
 from typing import NamedTuple
@@ -43,34 +43,34 @@ def missing_mechanism(fitted: FittedDamper) -> Missing | None:
         turns = reversals(test.displacement, test.velocity)
         stroke = np.clip(np.searchsorted(turns, np.arange(test.time.size), side="right") - 1, 0, turns.size - 2)
         distance = np.abs(test.displacement - test.displacement[turns[stroke]])
-        rest = (test.force - fitted.force(test)) / test.scale
+        residual = (test.force - fitted.force(test)) / test.scale
         inertia = np.gradient(test.velocity, test.time) / test.scale
-        each = [rest, np.sign(test.velocity), np.abs(test.velocity), distance, inertia, np.full(rest.size, at)]
+        each = [residual, np.sign(test.velocity), np.abs(test.velocity), distance, inertia, np.full(residual.size, at)]
         # The first stroke begins at no reversal.
         columns.append(np.stack(each)[:, test.settled & (stroke > 0)])
-    rest, sign, speed, distance, inertia, of_test = np.concatenate(columns, axis=1)
-    if not rest.size:
+    residual, sign, speed, distance, inertia, of_test = np.concatenate(columns, axis=1)
+    if residual.size < BINS:
         return None
-    rest = rest - np.mean(rest)
-    places, speeds = _bins(distance), _bins(speed)
-    whole = float(np.sum(rest**2))
-    after = sign * rest - _means(sign * rest, speeds)
+    residual = residual - np.mean(residual)
+    distances, speeds = _bins(distance), _bins(speed)
+    whole = float(np.sum(residual**2))
+    after = sign * residual - _means(sign * residual, speeds)
     shares = {
-        "gap": np.sum(_means(after, places) ** 2) / whole,
-        "hysteresis": (inertia @ rest) ** 2 / (inertia @ inertia) / whole,
+        "gap": np.sum(_means(after, distances) ** 2) / whole,
+        "hysteresis": (inertia @ residual) ** 2 / (inertia @ inertia) / whole,
         "frequency": np.sum(_means(after, len(fitted.tests) * speeds + of_test.astype(int)) ** 2) / whole,
-        "asymmetry": np.sum(_means(rest, speeds) ** 2) / whole,
+        "asymmetry": np.sum(_means(residual, speeds) ** 2) / whole,
     }
     name = max(shares, key=lambda each: float(shares[each]))
     if shares[name] < LEAST:
         return None
-    profile = np.array([np.mean(after[places == place]) for place in range(BINS)])
-    last = np.array([np.max(distance[places == place]) for place in range(BINS)])
+    profile = np.array([np.mean(after[distances == number_of_bin]) for number_of_bin in range(BINS)])
+    last = np.array([np.max(distance[distances == number_of_bin]) for number_of_bin in range(BINS)])
     return Missing(name, float(shares[name]), float(last[np.argmax(np.abs(np.diff(profile)))]))
 
 
 def missing_text(fitted: FittedDamper) -> str:
-    """Return a sentence on the mechanism that the law misses; empty if none explains the rest of the force."""
+    """Return a sentence on the missing mechanism; empty if none explains the rest of the force."""
     missing = missing_mechanism(fitted)
     if missing is None:
         return ""
