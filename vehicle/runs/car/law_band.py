@@ -6,10 +6,8 @@ and at least to zero; the curve takes the rest, straight between the velocities 
 does not fall with the velocity. Beyond the band the last slope continues.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -18,9 +16,6 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import damper_curve
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.tested_range import TestedRange
-
-if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
 
 EDGES = ("soft", "firm")
 """Edges of a band."""
@@ -88,7 +83,7 @@ def edge_of(
 class BandedCar:
     """Base of `Car`: the edges of the band of its dampers."""
 
-    def law_band(self, velocities: tuple[float, float] = (0.0, np.inf)) -> tuple[Car, Car]:
+    def law_band(self, velocities: tuple[float, float] = (0.0, np.inf)) -> tuple[Self, Self]:
         """Return this car with the softest and with the firmest dampers that their tests allow.
 
         The band of a damper is in the lines of `fit-damper`, for example `front.damper.tested.band_soft`; all dampers

@@ -153,9 +153,9 @@ def expected_error(fit: DamperFit, speeds: tuple[float, float], velocity: float)
     return Expected(float(np.sqrt(np.exp(2.0 * mean) + change)), float(highest))
 
 
-def bend_probability(bends: int, octaves: float, further: float) -> float:
+def bend_probability(before: int, octaves: float, further: float) -> float:
     """Return the probability of a bend in some further octaves, after a number of bends in the tested octaves."""
-    return float(1.0 - (1.0 - (bends + 1.0) / (bends + octaves + 2.0)) ** further)
+    return float(1.0 - (1.0 - (before + 1.0) / (before + octaves + 2.0)) ** further)
 
 
 def _bend_beyond(fit: DamperFit, slowest: float, fastest: float, velocity: float) -> tuple[float, float]:
