@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
+from vehicle.runs.car.law_band import BandedCar
 from vehicle.threads import one_blas_thread
 
 if TYPE_CHECKING:
     from vehicle.runs.car.levels import LevelMap, Plates
 
 
-class SteadyCar:
+class SteadyCar(BandedCar):
     """Base of `Car`: periodic states without a start-up."""
 
     @one_blas_thread()
