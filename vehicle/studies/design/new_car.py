@@ -21,8 +21,11 @@ from vehicle.studies.design.moved_points import Sources, moved_points
 from vehicle.studies.design.ride_solution import Target, new_car_of, quantities, solved, targets_of
 from vehicle.studies.design.scaled_parts import scaled_parts
 from vehicle.studies.design.stated_numbers import AXLES, NAMES, StatedNumbers, option
+from vehicle.studies.design.table_points import put_parameters, put_points
 from vehicle.studies.design.template_car import TemplateCar, template_car
 from vehicle.studies.design.tyre_size import with_tyre_size
+from vehicle.studies.design.unsprung_parts import put_unsprung
+from vehicle.studies.tables.car_table import CarTable
 from vehicle.threads import one_blas_thread
 
 LOADS_MET, FREQUENCIES_MET = 1e-3, 1e-2
@@ -73,13 +76,14 @@ class NewCar:
 
 
 @one_blas_thread()
-def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
+def new_car(name: str, source: Path | str, stated: StatedNumbers, points: CarTable | None = None) -> NewCar:
     """Make a new car.
 
     Args:
         name: name of the new car.
         source: template: name of a shipped car, or a vehicle file.
         stated: numbers of the new car; all others are those of its class or of the template, or estimated.
+        points: table of the car with points of its axles, curves and numbers of parts; None without one.
 
     Returns:
         The car, whose numbers are met within `LOADS_MET` and `FREQUENCIES_MET`.
@@ -96,17 +100,22 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
     engine = powertrain(stated.car_class)
     template = template.with_powertrain(engine)
     table, sources = moved_points(template, stated)
+    if points is not None:
+        sources |= put_points(table, template, points)
     before = value_sources(template.file)
     table, scaled = scaled_parts(table, template, ratio, powertrain=engine is None)
     of_parts = {path: f"{text}: {before[path]}" if path in before else text for path, text in scaled.items()}
+    of_parts |= put_unsprung(table, template, stated)
+    if points is not None:
+        of_parts |= put_parameters(table, template, points)
     table, of_body = balanced(table, template, stated)
-    sources |= of_parts | of_body | _curves(table, template, stated)
+    sources |= of_parts | of_body | _curves(table, template, stated, points)
     if engine is not None:
         sources["engine"] = f"class {stated.car_class}: {POWERTRAIN}"
     if stated.load:
         table["load"] = dict(stated.load)
         sources |= {f"load.{load}": "given" for load in stated.load}
-    targets = targets_of(template, stated)
+    targets = targets_of(template, stated, () if points is None else tuple(points.curves))
     # The step of the template is short enough for the template; without it each car gets its own.
     solver = {key: value for key, value in table.get("solver", {}).items() if key != "timestep"}
     table = solved({**table, "name": name, "solver": solver}, template, targets)
@@ -133,17 +142,23 @@ def template_files(source: Path, car: Car) -> list[Path]:
     return own_templates(names, folders)
 
 
-def _curves(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers) -> Sources:
+def _curves(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers, points: CarTable | None) -> Sources:
     """Put the stated damper curves into a vehicle table; return their sources."""
     sources = Sources()
     for word in AXLES:
-        if (file := stated.of_axle("damper_curve", word)) is None:
+        rows = None if points is None else points.curves.get(word)
+        if (file := stated.of_axle("damper_curve", word)) is not None:
+            law, name = {"curve": str(Path(file).absolute())}, Path(file).name
+        elif rows is not None and points is not None:
+            law = {"velocity": [velocity for velocity, _ in rows], "force": [force for _, force in rows]}
+            name = points.file
+        else:
             continue
         for path in template.element_paths(word)["damper"]:
             numbers = {k: v for k, v in value_at(table, path).items() if k not in ("viscous", "velocity", "force")}
-            numbers |= {"viscous_law": "table", "curve": str(Path(file).absolute())}
+            numbers |= {"viscous_law": "table", **law}
             put(table, {path: numbers})  # type: ignore[dict-item]
-            sources |= {f"{path}.{key}": f"given: {Path(file).name}" for key in ("viscous_law", "velocity", "force")}
+            sources |= {f"{path}.{key}": f"given: {name}" for key in ("viscous_law", "velocity", "force")}
     return sources
 
 
@@ -192,7 +207,7 @@ def _checks_of(car: Car, template: TemplateCar, stated: StatedNumbers, ratio: fl
             origin=_origin(name, template, stated, ratio),
         )
         for name in NAMES
-        if name in values
+        if name in values and (name not in ONLY_STATED or getattr(stated, name) is not None)
     )
 
 
@@ -278,6 +293,14 @@ def _parts(template: TemplateCar, stated: StatedNumbers, ratio: float) -> tuple[
     return (parts, f"{template.name}{scaled}"), ("points of the body", f"{template.name}, same share of the wheelbase")
 
 
+ONLY_STATED = tuple(
+    f"{name}_{axle}"
+    for name in ("unsprung_mass", "wheel_rate", "spring_stiffness", "tyre_stiffness", "wheel_damping",
+                 "damper_constant")
+    for axle in AXLES
+)  # fmt: skip
+"""Numbers that appear only if they are stated: each is another form of one of `RIDE_ORDER`."""
+
 RIDE_ORDER = (
     *("wheel_hop_front", "wheel_hop_rear", "ride_frequency_front", "ride_frequency_rear", "kerb_mass", "cog_x"),
     *("roll_inertia", "damping_ratio_front", "damping_ratio_rear", "track_front", "track_rear", "wheelbase"),
@@ -293,8 +316,15 @@ OTHER_NAMES = {
     "kerb_mass": ("front_axle_load", "rear_axle_load"),
     "cog_x": ("front_axle_load", "rear_axle_load"),
     "pitch_inertia": ("pitch_frequency",),
-    "damping_ratio_front": ("damper_curve_front",),
-    "damping_ratio_rear": ("damper_curve_rear",),
+    **{
+        f"{name}_{axle}": tuple(f"{other}_{axle}" for other in others)
+        for axle in AXLES
+        for name, others in {
+            "ride_frequency": ("wheel_rate", "spring_stiffness"),
+            "damping_ratio": ("damper_curve", "wheel_damping", "damper_constant"),
+            "wheel_hop": ("tyre_stiffness",),
+        }.items()
+    },
 }
 """Numbers that state another number too; the kerb mass needs both axle loads."""
 

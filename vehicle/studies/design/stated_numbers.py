@@ -1,6 +1,7 @@
 """Stated numbers of a new car; all are optional, and the template car supplies the others."""
 
 import dataclasses
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -26,6 +27,10 @@ AXLE: dict[str, Any] = {"at_least": 20.0, "why": "kg, neither a share nor t"}
 METRES: dict[str, Any] = {"why": "m, not mm"}
 HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
 RATIO: dict[str, Any] = {"why": "a ratio: 30 % of critical damping is 0.3"}
+UNSPRUNG: dict[str, Any] = {"at_least": 20.0, "at_most": 2000.0, "why": "of the axle, not of a wheel"}
+RATE: dict[str, Any] = {"at_least": 3e3, "at_most": 1e6, "why": "N/m, not N/mm; springs of cars have 1.5e4 to 2e5"}
+TYRE: dict[str, Any] = {"at_least": 5e4, "at_most": 2e6, "why": "N/m, not N/mm; tyres of cars have 1.5e5 to 4e5"}
+DAMPING: dict[str, Any] = {"at_least": 50.0, "at_most": 1e5, "why": "N s/m; dampers of cars have 1e3 to 5e3"}
 
 optional = partial(quantity, default=None)
 """Declaration of a number that need not be stated."""
@@ -103,6 +108,18 @@ class StatedNumbers:
         "roll stiffness of the rear axle without the tyres; sets the stabilizer, or the torsion of the beam",
         above=0.0,
     )
+    unsprung_mass_front: float | None = optional("kg", "unsprung mass of the front axle, both wheels", **UNSPRUNG)
+    unsprung_mass_rear: float | None = optional("kg", "unsprung mass of the rear axle, both wheels", **UNSPRUNG)
+    wheel_rate_front: float | None = optional("N/m", "spring rate of a front wheel, at the wheel", **RATE)
+    wheel_rate_rear: float | None = optional("N/m", "spring rate of a rear wheel, at the wheel", **RATE)
+    spring_stiffness_front: float | None = optional("N/m", "stiffness of a front spring, at the spring", **RATE)
+    spring_stiffness_rear: float | None = optional("N/m", "stiffness of a rear spring, at the spring", **RATE)
+    tyre_stiffness_front: float | None = optional("N/m", "vertical stiffness of a front tyre", **TYRE)
+    tyre_stiffness_rear: float | None = optional("N/m", "vertical stiffness of a rear tyre", **TYRE)
+    wheel_damping_front: float | None = optional("N s/m", "damping of a front wheel, at the wheel", **DAMPING)
+    wheel_damping_rear: float | None = optional("N s/m", "damping of a rear wheel, at the wheel", **DAMPING)
+    damper_constant_front: float | None = optional("N s/m", "constant of a front damper at 0.1 m/s", **DAMPING)
+    damper_constant_rear: float | None = optional("N s/m", "constant of a rear damper at 0.1 m/s", **DAMPING)
     car_class: str | None = optional("-", "class of the car, which sets default values")
     tyre_size: str | None = None
     of_class: tuple[str, ...] = ()
@@ -110,7 +127,14 @@ class StatedNumbers:
 
     def __post_init__(self) -> None:
         validate(self)
+        same = [
+            pair
+            for names in SAME_PARAMETER
+            for axle in AXLES
+            for pair in itertools.combinations([f"{name}_{axle}" for name in names], 2)
+        ]
         for first, second, why in (
+            *((*pair, "both set the same part") for pair in same),
             ("pitch_frequency", "pitch_inertia", "each follows from the other"),
             ("damping_ratio_front", "damper_curve_front", "the curve sets the damping"),
             ("damping_ratio_rear", "damper_curve_rear", "the curve sets the damping"),
@@ -150,6 +174,15 @@ class StatedNumbers:
         return f"class {self.car_class}" if name in self.of_class else "given"
 
 
+SAME_PARAMETER = (
+    ("ride_frequency", "wheel_rate", "spring_stiffness"),
+    ("damping_ratio", "wheel_damping", "damper_constant"),
+    ("damper_curve", "wheel_damping"),
+    ("damper_curve", "damper_constant"),
+    ("wheel_hop", "tyre_stiffness"),
+)
+"""Numbers of an axle of which one sets a part: spring, damper, tyre."""
+
 LOADS_AGREE = 5e-4
 """Largest deviation of the sum of two axle loads from the kerb mass, as a share of it: half of the promised 0.1 %."""
 
@@ -168,18 +201,25 @@ def option(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
+def stated_numbers(
+    file: Path | None, more: Mapping[str, Any], of_table: Mapping[str, Any] | None = None
+) -> StatedNumbers:
     """Return the numbers of a TOML file and of a command line, which takes precedence.
 
     Args:
         file: TOML file with the names of `StatedNumbers` and tables [load.NAME]; None without a file.
         more: numbers by name, which may be None.
+        of_table: numbers of a table of the car; those of the file and of the command line replace them, also where
+            they set the same part under another name.
     """
     table = {} if file is None else read_table(file)
     for name in ("damper_curve_front", "damper_curve_rear"):
         if file is not None and isinstance(table.get(name), str):
             table[name] = str(file.parent / table[name])
     table |= {name: value for name, value in more.items() if value is not None}
+    for name, value in (of_table or {}).items():
+        if not any(name in names and any(other in table for other in names) for names in _replaced()):
+            table.setdefault(name, value)
     table |= {name: _load_of(name, table) for name in AXLE_LOADS if isinstance(table.get(name), str)}
     try:
         return build(StatedNumbers, table)
@@ -187,6 +227,13 @@ def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
         text = str(error).replace("StatedNumbers.", "")
         key = text.split(":")[0]
         raise ConfigurationError(f"{option(key)}{text[len(key) :]}" if key in NAMES else text) from None
+
+
+def _replaced() -> list[tuple[str, ...]]:
+    """Return groups of numbers of which a typed one replaces all others of a table."""
+    loads = ("cog_x", "front_axle_load", "rear_axle_load")
+    parts = [tuple(f"{name}_{axle}" for name in names) for names in SAME_PARAMETER for axle in AXLES]
+    return [loads, ("tyre_radius", "tyre_size"), ("pitch_frequency", "pitch_inertia"), *parts]
 
 
 def _load_of(name: str, table: Mapping[str, Any]) -> float:

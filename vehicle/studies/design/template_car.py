@@ -57,6 +57,11 @@ class TemplateCar:
         """Return the height of the plates under the front wheels [m]."""
         return self.wheels["front"][0].patch[2]
 
+    @property
+    def point_names(self) -> dict[str, tuple[str, ...]]:
+        """Return the names of the hardpoints of each axle by its word."""
+        return {word: tuple(self.table[self.axle(word)].get("hardpoints", {})) for word in AXLES}
+
     def with_powertrain(self, engine: Mapping[str, Any] | None) -> TemplateCar:
         """Return the template with another powertrain; itself for None."""
         if engine is None:

@@ -1,0 +1,143 @@
+"""Table of a car: what a file states of a car, in the words of the vehicle file, with all guesses and all that is left.
+
+hardpoints, masses, CoG, inertia, rates, damper curves, tyres   CSV, text, XLSX
+"""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from vehicle.errors import DataError
+from vehicle.studies.tables.axes import Vector3
+from vehicle.studies.tables.axle_points import PlacedPoints, placed_points
+from vehicle.studies.tables.car_numbers import AXLES, CarNumbers, car_numbers, read_numbers
+from vehicle.studies.tables.point_names import OF_OTHER_AXLES, TEMPLATE_NAMES
+from vehicle.studies.tables.statements import Statements, statements
+from vehicle.studies.tables.unit_factor import unit_factor
+
+
+@dataclass(slots=True)
+class CarTable:
+    """What a file states of a car.
+
+    Attributes:
+        file: name of the file.
+        numbers: values by names of `vehicle.studies.design.stated_numbers.StatedNumbers`.
+        points: x behind the wheel centre, y, z above the wheel centre [m], by axle and name in its template.
+        curves: velocity [m/s] and force [N] of the dampers by axle, extension positive.
+        parameters: value and origin by axle and path in its table; "tyre." for its tyres.
+        origins: rows behind each number, by name, and behind each point, by axle and name.
+        guessed, left_out: sentences, each with its place in the file or "".
+        axes: axes of the points in words; "" without points.
+    """
+
+    file: str
+    numbers: dict[str, Any] = field(default_factory=dict)
+    points: dict[str, dict[str, Vector3]] = field(default_factory=dict)
+    curves: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
+    parameters: dict[tuple[str, str], tuple[Any, str]] = field(default_factory=dict)
+    origins: dict[Any, str] = field(default_factory=dict)
+    guessed: list[tuple[str, str]] = field(default_factory=list)
+    left_out: list[tuple[str, str]] = field(default_factory=list)
+    axes: str = ""
+
+    def origin(self, axle: str, name: str) -> str:
+        """Return the name of a point in the file, for the source of its coordinates."""
+        return f"{self.origins[axle, name]} of {self.file}"
+
+
+def car_table(path: Path, names: Mapping[str, Collection[str]]) -> CarTable:
+    """Read what a file states of a car.
+
+    Args:
+        path: file.
+        names: names of the hardpoints of the template by axle, "front" and "rear".
+
+    Raises:
+        ConfigurationError: the file is missing or of a kind that is not read.
+        DataError: its content contradicts itself, or cannot be understood.
+    """
+    return table_of(statements(path), names)
+
+
+def table_of(found: Statements, names: Mapping[str, Collection[str]]) -> CarTable:
+    """Return the table of a car from the statements of a file."""
+    result = CarTable(file=found.file, left_out=list(found.left_out))
+    numbers = CarNumbers()
+    values = read_numbers(found, numbers)
+    radius, track = ({axle: entry.value * factor for axle in AXLES
+                      if (entry := values.get((key, axle)) or values.get((key, ""))) is not None}
+                     for key, factor in (("tyre_radius", 1.0), ("track", 0.5)))  # fmt: skip
+    placed = placed_points(found, radius, track)
+    given: dict[str, Any] = {"cog": placed.cog, "wheelbase": placed.wheelbase}
+    for axle, points in placed.axles.items():
+        given[f"track_{axle}"] = 2.0 * points.half_track
+        if points.radius is not None and given.get("tyre_radius") is None:
+            given["tyre_radius"] = points.radius
+        _use_points(axle, placed, names[axle], result)
+    at_spring = {axle: _has_spring(points) for axle, points in result.points.items()}
+    car_numbers(values, numbers, given, at_spring)
+    result.numbers, result.origins = numbers.stated, {**result.origins, **numbers.origins}
+    _damper_curves(found, result)
+    result.guessed += placed.guessed + numbers.guessed
+    result.left_out += placed.left_out + numbers.left_out
+    result.axes = "" if placed.axes is None else f"{placed.axes.text} ({placed.axes.origin})"
+    if not (result.numbers or result.points or result.curves):
+        some = "; ".join(text for _, text in result.left_out[:3])
+        raise DataError(f"{found.file}: nothing in it is a number or a point of a car{f' ({some})' if some else ''}; name "
+                        "rows as in docs: howto/table")  # fmt: skip
+    return result
+
+
+def _use_points(axle: str, placed: PlacedPoints, names: Collection[str], result: CarTable) -> None:
+    """Enter the points of an axle by their names in the template, or say why they do not fit it."""
+    points = placed.axles[axle]
+    own = {key: next((name for name in TEMPLATE_NAMES[key] if name in names), "") for key in points.at}
+    other = sorted({OF_OTHER_AXLES[key] for key, name in own.items() if not name and key in OF_OTHER_AXLES})
+    if other:
+        result.left_out.append(("", f"points of the {axle} axle but its wheel centre: the {axle} axle of the template has "
+                                f"not {' and '.join(other)}; start from a car with such an axle (--from)"))  # fmt: skip
+        own = {key: name if key in ("wheel_center", "tyre_patch") else "" for key, name in own.items()}
+    used: dict[str, Vector3] = {}
+    for key, name in own.items():
+        place, text = points.places[key]
+        if name:
+            used[name] = points.at[key]
+            result.origins[axle, name] = text
+        elif not other:
+            result.left_out.append((place, f"{text!r}: the {axle} axle of the template has no such point"))
+    result.points[axle] = used
+
+
+def _has_spring(points: Mapping[str, Vector3]) -> bool:
+    """True if the points of an axle place its spring and the arm that leads the wheel, so a rate is one of the spring."""
+    seats = "strut_top" in points or {"spring_lower", "spring_upper"} <= set(points)
+    return seats and bool({"lower_ball", "pivot"} & set(points))
+
+
+def _damper_curves(found: Statements, result: CarTable) -> None:
+    """Enter the damper curves; forces of the other sign than the velocity are turned."""
+    for curve in found.curves:
+        scale = []
+        for unit, dimension, si in zip(curve.units, ((0, 1, -1, 0), (1, 1, -2, 0)), ("m/s", "N"), strict=True):
+            factor = unit_factor(unit, dimension)
+            if factor is None or factor.dimension != dimension:
+                raise DataError(f"{curve.place}: damper curve with the unit {unit or 'nothing'!r}; write {si} in its "
+                                "header, for example force [N]")  # fmt: skip
+            scale.append(factor.factor)
+        if not curve.axle:
+            raise DataError(f"{curve.place}: damper curve of no axle; write a title above it: damper front")
+        if curve.axle in result.curves:
+            raise DataError(f"{curve.place}: a second damper curve of the {curve.axle} axle; remove one")
+        rows = sorted((velocity * scale[0], force * scale[1]) for velocity, force in curve.rows)
+        if all(velocity * force <= 0.0 for velocity, force in rows):
+            rows = [(velocity, -force) for velocity, force in rows]
+            result.guessed.append((curve.place, "damper forces turned: they oppose the velocity"))
+        result.curves[curve.axle] = rows
+        result.origins[curve.axle, "curve"] = curve.place
+        for name in ("wheel_damping", "damper_constant", "damping_ratio"):
+            if (value := result.numbers.pop(f"{name}_{curve.axle}", None)) is not None:
+                result.left_out.append(
+                    ("", f"{name.replace('_', ' ')} {curve.axle} {value:g}: the damper has a curve in the table")
+                )
