@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 GROUPS = {
     "mass": ("kerb_mass", "front_axle_load", "rear_axle_load", "cog_x", "cog_height"),
-    "lengths": ("wheelbase", "track_front", "track_rear", "tyre_radius"),
+    "lengths": ("wheelbase", "track_front", "track_rear", "tyre_radius", "tyre_free_radius"),
     "inertia": ("roll_inertia", "pitch_inertia", "yaw_inertia"),
     "ride": ("ride_frequency_front", "ride_frequency_rear", "pitch_frequency", "wheel_hop_front", "wheel_hop_rear"),
     "dampers": ("damping_ratio_front", "damping_ratio_rear", "damper_curve_front", "damper_curve_rear"),
@@ -121,10 +121,11 @@ class NewSettings(Settings):
         type=Path,
         metavar="FILE.toml",
     )
-    table: Path | None = setting(
-        "table of the car: hardpoints, masses, rates, tyres with names and units (CSV, XLSX, .adm, .cmd, .urdf, .tir); "
+    table: Sequence[Path] | None = setting(
+        "tables of the car: hardpoints, masses, rates, tyres with names and units (CSV, XLSX, .adm, .cmd, .urdf, .tir); "
         "options and --numbers take precedence",
         type=Path,
+        nargs="+",
         metavar="FILE",
     )
     stated: Mapping[str, Any] = field(default_factory=dict)
@@ -161,7 +162,7 @@ def _job(settings: NewSettings, console: Console) -> None:
             f"NAME {name}: is the name of a shipped car, which --vehicle finds first; choose another name"
         )
     stated = stated_numbers(settings.numbers, settings.stated)
-    if from_car is None and settings.table is not None:
+    if from_car is None and settings.table:
         from_car = "sedan"
     if from_car is None:
         if stated.car_class is None:
@@ -175,7 +176,7 @@ def _job(settings: NewSettings, console: Console) -> None:
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
     given, template = None, template_car(source)
-    if settings.table is not None:
+    if settings.table:
         given = car_table(settings.table, template.point_names)
         stated = stated_numbers(settings.numbers, settings.stated, given.numbers)
     result = new_car(name, from_car, stated, given)

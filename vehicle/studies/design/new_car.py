@@ -21,7 +21,7 @@ from vehicle.studies.design.moved_points import Sources, moved_points
 from vehicle.studies.design.ride_solution import Target, new_car_of, quantities, solved, targets_of
 from vehicle.studies.design.scaled_parts import scaled_parts
 from vehicle.studies.design.stated_numbers import AXLES, NAMES, StatedNumbers, option
-from vehicle.studies.design.table_points import put_parameters, put_points
+from vehicle.studies.design.table_points import put_parameters, put_points, put_tyre
 from vehicle.studies.design.template_car import TemplateCar, template_car
 from vehicle.studies.design.tyre_size import with_tyre_size
 from vehicle.studies.design.unsprung_parts import put_unsprung
@@ -105,10 +105,12 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, points: CarTab
     before = value_sources(template.file)
     table, scaled = scaled_parts(table, template, ratio, powertrain=engine is None)
     of_parts = {path: f"{text}: {before[path]}" if path in before else text for path, text in scaled.items()}
-    of_parts |= put_unsprung(table, template, stated)
     if points is not None:
         of_parts |= put_parameters(table, template, points)
+    of_parts |= put_unsprung(table, template, stated)
     table, of_body = balanced(table, template, stated)
+    if points is not None:
+        of_parts |= put_tyre(table, template, points)
     sources |= of_parts | of_body | _curves(table, template, stated, points)
     if engine is not None:
         sources["engine"] = f"class {stated.car_class}: {POWERTRAIN}"

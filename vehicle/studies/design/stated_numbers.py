@@ -41,7 +41,7 @@ class StatedNumbers:
     """Numbers of a car; None: not stated. `option` returns its name on a command line.
 
     `tyre_size`, e.g. 205/55R16, replaces the radius. `of_class` has the names of the numbers taken from the class
-    of the car.
+    of the car, `of_load` of those that follow from the load of the wheels.
     """
 
     kerb_mass: float | None = optional("kg", "mass of the car without driver and loads ([load])", at_most=2e4, **CAR)
@@ -66,6 +66,9 @@ class StatedNumbers:
     track_rear: float | None = optional("m", "track of the rear wheels", above=0.0, at_most=4.0, **METRES)
     tyre_radius: float | None = optional(
         "m", "loaded radius: wheel centre above the ground", above=0.0, at_most=2.0, **METRES
+    )
+    tyre_free_radius: float | None = optional(
+        "m", "radius without load, instead of the loaded radius", above=0.0, at_most=2.0, **METRES
     )
     roll_inertia: float | None = optional(
         "kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0
@@ -123,6 +126,7 @@ class StatedNumbers:
     car_class: str | None = optional("-", "class of the car, which sets default values")
     tyre_size: str | None = None
     of_class: tuple[str, ...] = ()
+    of_load: tuple[str, ...] = ()
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
 
     def __post_init__(self) -> None:
@@ -138,10 +142,12 @@ class StatedNumbers:
             ("pitch_frequency", "pitch_inertia", "each follows from the other"),
             ("damping_ratio_front", "damper_curve_front", "the curve sets the damping"),
             ("damping_ratio_rear", "damper_curve_rear", "the curve sets the damping"),
+            ("tyre_radius", "tyre_free_radius", "each follows from the other under the load"),
             ("cog_x", "front_axle_load", "both give the position of the centre of gravity"),
             ("cog_x", "rear_axle_load", "both give the position of the centre of gravity"),
         ):
-            if getattr(self, first) is not None and getattr(self, second) is not None:
+            solved = {first, second} == {"tyre_radius", "tyre_free_radius"} and "tyre_radius" in self.of_load
+            if getattr(self, first) is not None and getattr(self, second) is not None and not solved:
                 raise ConfigurationError(f"{option(first)} and {option(second)}: {why}; leave one of the two out")
         mass, front, rear = self.kerb_mass, self.front_axle_load, self.rear_axle_load
         if (
@@ -171,6 +177,8 @@ class StatedNumbers:
         """Return where a number comes from: "given", "class small" or "tyre 205/55R16"."""
         if name == "tyre_radius" and self.tyre_size is not None:
             return f"tyre {self.tyre_size}"
+        if name == "tyre_radius" and self.tyre_free_radius is not None:
+            return f"free radius {self.tyre_free_radius:g} m"
         return f"class {self.car_class}" if name in self.of_class else "given"
 
 
@@ -186,7 +194,7 @@ SAME_PARAMETER = (
 LOADS_AGREE = 5e-4
 """Largest deviation of the sum of two axle loads from the kerb mass, as a share of it: half of the promised 0.1 %."""
 
-NOT_NUMBERS = ("tyre_size", "load", "inertia", "car_class", "of_class")
+NOT_NUMBERS = ("tyre_size", "load", "inertia", "car_class", "of_class", "of_load")
 """Fields that are no numbers of a car."""
 
 NAMES = tuple(entry.name for entry in dataclasses.fields(StatedNumbers) if entry.name not in NOT_NUMBERS)
@@ -217,8 +225,12 @@ def stated_numbers(
         if file is not None and isinstance(table.get(name), str):
             table[name] = str(file.parent / table[name])
     table |= {name: value for name, value in more.items() if value is not None}
-    for name, value in (of_table or {}).items():
-        if not any(name in names and any(other in table for other in names) for names in _replaced()):
+    of_table, typed = dict(of_table or {}), set(table)
+    if typed & {*AXLE_LOADS, "cog_x"} and set(AXLE_LOADS) <= set(of_table):
+        # The mass of the table stays where a typed load replaces its two.
+        of_table["kerb_mass"] = sum(of_table[name] for name in AXLE_LOADS)
+    for name, value in of_table.items():
+        if not any(name in names and typed & set(names) for names in _replaced()):
             table.setdefault(name, value)
     table |= {name: _load_of(name, table) for name in AXLE_LOADS if isinstance(table.get(name), str)}
     try:
@@ -233,7 +245,7 @@ def _replaced() -> list[tuple[str, ...]]:
     """Return groups of numbers of which a typed one replaces all others of a table."""
     loads = ("cog_x", "front_axle_load", "rear_axle_load")
     parts = [tuple(f"{name}_{axle}" for name in names) for names in SAME_PARAMETER for axle in AXLES]
-    return [loads, ("tyre_radius", "tyre_size"), ("pitch_frequency", "pitch_inertia"), *parts]
+    return [loads, ("tyre_radius", "tyre_free_radius", "tyre_size"), ("pitch_frequency", "pitch_inertia"), *parts]
 
 
 def _load_of(name: str, table: Mapping[str, Any]) -> float:

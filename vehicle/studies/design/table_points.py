@@ -4,11 +4,14 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import rounded
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_at
 from vehicle.model.parameters.whole_body import put
+from vehicle.studies.design.mass_balance import axle_loads, kerb_model
 from vehicle.studies.design.moved_points import DIGITS, Sources
 from vehicle.studies.design.template_car import TemplateCar
+from vehicle.studies.design.unsprung_parts import times
 from vehicle.studies.tables.car_table import CarTable
 
 
@@ -77,4 +80,36 @@ def put_parameters(table: dict[str, Any], template: TemplateCar, points: CarTabl
         else:
             put(table, {vector: value})  # type: ignore[dict-item]
         sources[vector] = f"given: {origin}"
+        beside = f"{vector.removesuffix('.mass')}.inertia"
+        if vector.endswith(".mass") and isinstance(before.get("inertia"), list | tuple):
+            put(table, {beside: times(before["inertia"], value / before["mass"])})
+            sources[beside] = f"template {template.name}, in proportion to the mass"
+    return sources
+
+
+def put_tyre(table: dict[str, Any], template: TemplateCar, points: CarTable) -> Sources:
+    """Put slip stiffness, trail and carcass of a tyre file, under the load of each axle, into a vehicle table."""
+    sources, tyre = Sources(), points.tyre
+    if tyre is None:
+        return sources
+    loads = axle_loads(kerb_model(table, template), template)
+    for word, path in template.tyre_paths.items():
+        load = 0.5 * loads[word] * template.vehicle.gravity
+        along, across = tyre.carcass()
+        at = f"{tyre.file} ({tyre.model}) at {load:.0f} N"
+        numbers = {
+            "slip_stiffness": (tyre.longitudinal(load), at),
+            "cornering_stiffness": (tyre.lateral(load), at),
+            "trail": (min(max(tyre.trail(load), 0.0), 0.1), at),
+            "carcass_longitudinal": (along, f"{tyre.file} at {tyre.nominal_load:.0f} N"),
+            "carcass_lateral": (across, f"{tyre.file} at {tyre.nominal_load:.0f} N"),
+        }
+        for name, (value, origin) in numbers.items():
+            if value is None:
+                points.left_out.append(
+                    ("", f"{word} {name}: {tyre.file} has no transient coefficients; as the template")
+                )
+                continue
+            put(table, {f"{path}.{name}": rounded(value, 6)})
+            sources[f"{path}.{name}"] = f"given: {origin}"
     return sources

@@ -30,10 +30,19 @@ def put_unsprung(table: dict[str, Any], template: TemplateCar, stated: StatedNum
             unit = template.vehicle.quantity_of(whole).get("unit") if path.startswith(f"{axle}.") else None
             if unit not in ("kg", "kg m2") or whole in sources:
                 continue
-            value, factor = value_at(table, whole), mass / found
-            numbers = [rounded(factor * item, 9) for item in (value if isinstance(value, list | tuple) else [value])]
-            put(table, {whole: numbers if isinstance(value, list | tuple) else numbers[0]})  # type: ignore[dict-item]
+            put(table, {whole: times(value_at(table, whole), mass / found)})
             sources[whole] = (
-                f"template {template.name} times {factor:.4g}, from {stated.stated(f'unsprung_mass_{word}')}"
+                f"template {template.name} times {mass / found:.4g}, from {stated.stated(f'unsprung_mass_{word}')}"
             )
     return sources
+
+
+def times(value: Any, factor: float) -> Any:
+    """Return a mass, or the moments of a part, times a factor; round-off leaves the moments those of a body."""
+    if not isinstance(value, list | tuple):
+        return rounded(factor * value, 9)
+    numbers = [rounded(factor * item, 9) for item in value]
+    largest = numbers.index(max(numbers[:3]))
+    # A disc has I_x + I_y = I_z exactly.
+    numbers[largest] = min(numbers[largest], rounded((1.0 - 1e-9) * (sum(numbers[:3]) - numbers[largest]), 12))
+    return numbers

@@ -18,7 +18,7 @@ from vehicle.digits import number as shown
 from vehicle.errors import DataError
 from vehicle.studies.tables.number_names import GUESSED, PER_WHEEL, QUANTITIES, SI, number_of
 from vehicle.studies.tables.statements import Number, Statements
-from vehicle.studies.tables.unit_factor import unit_factor
+from vehicle.studies.tables.unit_factor import MASS, unit_factor
 
 AXLES = ("front", "rear")
 GRAVITY = 9.81
@@ -47,11 +47,13 @@ class CarNumbers:
     Attributes:
         stated: values by names of `StatedNumbers`.
         origins: place and text of the rows behind each of them.
+        parameters: values and origins by axle and path, of parts without such a name.
         guessed, left_out: sentences with the place or "".
     """
 
     stated: dict[str, Any] = field(default_factory=dict)
     origins: dict[str, str] = field(default_factory=dict)
+    parameters: dict[tuple[str, str], tuple[float, str]] = field(default_factory=dict)
     guessed: list[tuple[str, str]] = field(default_factory=list)
     left_out: list[tuple[str, str]] = field(default_factory=list)
 
@@ -68,7 +70,7 @@ def read_numbers(found: Statements, result: CarNumbers) -> Values:
     """
     values: Values = {}
     corners: dict[tuple[str, str], dict[str, Stated]] = {}
-    per_wheel = _by_the_sum(found)
+    per_wheel, symbols = _by_the_sum(found), list[str]()
     for row in found.numbers:
         known = number_of(row.name)
         if isinstance(row.value, str):
@@ -84,8 +86,8 @@ def read_numbers(found: Statements, result: CarNumbers) -> Values:
         if key == "axle_load" and row.unit.strip() == "%":
             key = "front_share"
         value = Stated(value=_si(row, key, result), place=row.place, text=_text(row))
-        if symbol and len(row.name.text) <= 4:
-            result.guessed.append((row.place, f"symbol {row.name.text!r}: {_words(key, axle)}"))
+        if symbol and len(row.name.words) <= 2 and row.name.words != (key,):
+            symbols.append(f"{row.name.text} {_words(key, axle)}")
         value = _of_axle(row, key, value, result, per_wheel)
         _require_size(row, key, value.value)
         if row.name.side in ("left", "right"):
@@ -100,6 +102,8 @@ def read_numbers(found: Statements, result: CarNumbers) -> Values:
                 f"values of {_words(key, axle)}; remove one, or name the axle"
             )
         values[key, axle] = value
+    if symbols:
+        result.guessed.append(("", f"symbols: {', '.join(symbols)}"))
     for (key, axle), sides in corners.items():
         values[key, axle] = _both_sides(key, axle, sides, result)
     return values
@@ -146,7 +150,7 @@ def _by_the_sum(found: Statements) -> bool | None:
             and isinstance(row.value, float)
             and known[0] in ("kerb_mass", "sprung_mass", "unsprung_mass")
         ):
-            unit = unit_factor(row.unit or "kg")
+            unit = unit_factor(row.unit or "kg", MASS)
             masses.setdefault(known[0], []).append(row.value * (1.0 if unit is None else unit.factor))
     sizes = [len(masses.get(key, ())) for key in ("kerb_mass", "sprung_mass", "unsprung_mass")]
     if sizes not in ([1, 1, 2], [1, 1, 1]):
@@ -282,24 +286,13 @@ def _lengths(table: _Numbers, points: Mapping[str, Any]) -> None:
     rear = table.get("tyre_radius", "rear")
     if rear is not None and abs(rear - table.result.stated.get("tyre_radius", rear)) > 1e-3:
         table.result.left_out.append(("", f"rear tyre radius {rear:g} m: the car has one radius, that of the front"))
-    front, rear_free = (table.get("free_radius", axle) for axle in AXLES)
-    free = front or rear_free
+    free = table.get("free_radius", "front") or table.get("free_radius", "rear")
     if free is not None and "tyre_radius" not in table.result.stated:
-        # Loaded under a quarter of the mass; the share of the front axle moves this by a millimetre.
-        mass, rate = table.get("kerb_mass") or table.get("sprung_mass"), table.get("tyre_rate", "front")
-        if mass is None or rate is None:
-            raise DataError("free tyre radius: needs mass and tyre stiffness for the loaded radius; add them, or state "
-                            "the loaded radius")  # fmt: skip
-        share = _front_share(table)
-        table.put("tyre_radius", round(free - 0.5 * share * mass * GRAVITY / rate, 6), ("free_radius", ""),
-                  ("free_radius", "front"), why="less the deflection by the wheel load")  # fmt: skip
-
-
-def _front_share(table: _Numbers) -> float:
-    a, b, wheelbase = _cog_distances(table)
-    if a is not None and wheelbase:
-        return 1.0 - a / wheelbase
-    return b / wheelbase if b is not None and wheelbase else 0.5
+        row = next(key for key in (("free_radius", "front"), ("free_radius", ""), ("free_radius", "rear"))
+                   if key in table.values)  # fmt: skip
+        table.put("tyre_free_radius", free, row)
+    elif free is not None:
+        table.result.left_out.append(("", f"free radius {free:g} m: the loaded radius is known too"))
 
 
 def _cog_distances(table: _Numbers) -> tuple[float | None, float | None, float | None]:
@@ -485,7 +478,9 @@ def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
 def _damping(table: _Numbers, axle: str, ratio: float | None, *, at_spring: bool) -> None:
     share, wheel = table.get("damping_ratio", axle), table.get("wheel_damping", axle)
     damper = table.get("damper_constant", axle)
-    table.get("tyre_damping", axle)
+    if (rubber := table.get("tyre_damping", axle)) is not None:
+        row = table.values.get(("tyre_damping", axle)) or table.values["tyre_damping", ""]
+        table.result.parameters[axle, "tyre.damping.z"] = (rubber, row.text)
     if wheel is not None:
         table.put(f"wheel_damping_{axle}", wheel, ("wheel_damping", axle), ("wheel_damping", ""))
     elif damper is not None and ratio is not None:

@@ -3,7 +3,7 @@
 hardpoints, masses, CoG, inertia, rates, damper curves, tyres   CSV, text, XLSX
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,9 @@ from vehicle.studies.tables.axes import Vector3
 from vehicle.studies.tables.axle_points import PlacedPoints, placed_points
 from vehicle.studies.tables.car_numbers import AXLES, CarNumbers, car_numbers, read_numbers
 from vehicle.studies.tables.point_names import OF_OTHER_AXLES, TEMPLATE_NAMES
-from vehicle.studies.tables.statements import Statements, statements
+from vehicle.studies.tables.statements import Number, Statements
+from vehicle.studies.tables.table_file import file_statements
+from vehicle.studies.tables.tyre_file import TyreFile
 from vehicle.studies.tables.unit_factor import unit_factor
 
 
@@ -30,6 +32,7 @@ class CarTable:
         origins: rows behind each number, by name, and behind each point, by axle and name.
         guessed, left_out: sentences, each with its place in the file or "".
         axes: axes of the points in words; "" without points.
+        tyre: tyre of a `.tir` file, for its slip stiffness under the load of the car.
     """
 
     file: str
@@ -41,53 +44,109 @@ class CarTable:
     guessed: list[tuple[str, str]] = field(default_factory=list)
     left_out: list[tuple[str, str]] = field(default_factory=list)
     axes: str = ""
+    tyre: TyreFile | None = None
 
     def origin(self, axle: str, name: str) -> str:
         """Return the name of a point in the file, for the source of its coordinates."""
         return f"{self.origins[axle, name]} of {self.file}"
 
 
-def car_table(path: Path, names: Mapping[str, Collection[str]]) -> CarTable:
-    """Read what a file states of a car.
+def car_table(paths: Sequence[Path], names: Mapping[str, Collection[str]]) -> CarTable:
+    """Read what one or several files state of one car.
 
     Args:
-        path: file.
-        names: names of the hardpoints of the template by axle, "front" and "rear".
+        paths: files; each may have points in axes of its own.
+        names: names of the hardpoints and parts of the template by axle, "front" and "rear".
 
     Raises:
-        ConfigurationError: the file is missing or of a kind that is not read.
-        DataError: its content contradicts itself, or cannot be understood.
+        ConfigurationError: a file is missing or of a kind that is not read.
+        DataError: the content contradicts itself, or cannot be understood.
     """
-    return table_of(statements(path), names)
-
-
-def table_of(found: Statements, names: Mapping[str, Collection[str]]) -> CarTable:
-    """Return the table of a car from the statements of a file."""
-    result = CarTable(file=found.file, left_out=list(found.left_out))
-    numbers = CarNumbers()
-    values = read_numbers(found, numbers)
+    files = [file_statements(path) for path in paths]
+    whole = Statements(file=", ".join(found.file for found in files))
+    result, numbers = CarTable(file=whole.file), CarNumbers()
+    for found in files:
+        whole.numbers += found.numbers
+        whole.curves += found.curves
+        result.left_out += found.left_out
+        if found.tyre is not None:
+            if result.tyre is not None:
+                raise DataError(f"{found.file}: a second tyre file; give one, both axles have the same tyre")
+            result.tyre = found.tyre
+    whole.numbers = _without_parts(whole.numbers, names, result)
+    values = read_numbers(whole, numbers)
     radius, track = ({axle: entry.value * factor for axle in AXLES
                       if (entry := values.get((key, axle)) or values.get((key, ""))) is not None}
                      for key, factor in (("tyre_radius", 1.0), ("track", 0.5)))  # fmt: skip
-    placed = placed_points(found, radius, track)
-    given: dict[str, Any] = {"cog": placed.cog, "wheelbase": placed.wheelbase}
-    for axle, points in placed.axles.items():
-        given[f"track_{axle}"] = 2.0 * points.half_track
-        if points.radius is not None and given.get("tyre_radius") is None:
-            given["tyre_radius"] = points.radius
-        _use_points(axle, placed, names[axle], result)
+    given: dict[str, Any] = {}
+    for found in files:
+        _place(found, radius, track, names, given, result)
     at_spring = {axle: _has_spring(points) for axle, points in result.points.items()}
     car_numbers(values, numbers, given, at_spring)
     result.numbers, result.origins = numbers.stated, {**result.origins, **numbers.origins}
-    _damper_curves(found, result)
-    result.guessed += placed.guessed + numbers.guessed
-    result.left_out += placed.left_out + numbers.left_out
-    result.axes = "" if placed.axes is None else f"{placed.axes.text} ({placed.axes.origin})"
-    if not (result.numbers or result.points or result.curves):
+    result.parameters |= numbers.parameters
+    _damper_curves(whole, result)
+    result.guessed += numbers.guessed
+    result.left_out += numbers.left_out
+    if not (result.numbers or result.points or result.curves or result.parameters):
         some = "; ".join(text for _, text in result.left_out[:3])
-        raise DataError(f"{found.file}: nothing in it is a number or a point of a car{f' ({some})' if some else ''}; name "
+        raise DataError(f"{whole.file}: nothing in it is a number or a point of a car{f' ({some})' if some else ''}; name "
                         "rows as in docs: howto/table")  # fmt: skip
     return result
+
+
+def _place(found: Statements, radius: Mapping[str, float], track: Mapping[str, float],
+           names: Mapping[str, Collection[str]], given: dict[str, Any], result: CarTable) -> None:  # fmt: skip
+    """Enter the points of a file, and the lengths and the centre of gravity that they give."""
+    placed = placed_points(found, radius, track)
+    lengths: dict[str, Any] = {"cog": placed.cog, "wheelbase": placed.wheelbase}
+    for axle, points in placed.axles.items():
+        if axle in result.points:
+            raise DataError(f"{found.file}: has points of the {axle} axle, as has another file; give each axle once")
+        lengths[f"track_{axle}"] = 2.0 * points.half_track
+        if points.radius is not None and lengths.get("tyre_radius") is None:
+            lengths["tyre_radius"] = points.radius
+        _use_points(axle, placed, names[axle], result)
+    given |= {key: value for key, value in lengths.items() if value is not None}
+    result.guessed += placed.guessed
+    result.left_out += placed.left_out
+    if placed.axes is not None:
+        result.axes = f"{placed.axes.text} ({placed.axes.origin})"
+
+
+PARTS: dict[str, tuple[str, ...]] = {
+    "lower arm": ("a_arm", "lower_arm"),
+    "arm": ("a_arm",),
+    "upper arm": ("upper_arm",),
+    "knuckle": ("knuckle",),
+    "wheel": ("tyre",),
+    "wheel tyre": ("tyre",),
+    "tie": ("steering_rod", "tie_link"),
+    "brake disc": ("brake_disc",),
+    "caliper": ("caliper",),
+    "trailing": ("arm",),
+}
+"""Words of a part and its names in the templates."""
+
+
+def _without_parts(rows: Sequence[Number], names: Mapping[str, Collection[str]], result: CarTable) -> list[Number]:
+    """Return the numbers that are no masses of parts; enter these, which need an axle."""
+    others = []
+    for row in rows:
+        words = " ".join(sorted(set(row.name.words) - {"mass", "gel", "ger"}, reverse="upper" in row.name.words))
+        words = {"arm lower": "lower arm", "tyre wheel": "wheel tyre"}.get(words, words)
+        unit = unit_factor(row.unit or "kg")
+        if "mass" not in row.name.words or words not in PARTS or unit is None or not isinstance(row.value, float):
+            others.append(row)
+            continue
+        axle = row.name.axle
+        part = next((name for name in PARTS[words] if axle and name in names[axle]), "")
+        if part:
+            result.parameters[axle, f"parts.{part}.mass"] = (row.value * unit.factor, f"{row.name.text} ({row.place})")
+        else:
+            why = f"the {axle} axle of the template has no such part" if axle else "does not say which axle"
+            result.left_out.append((row.place, f"{row.name.text!r} = {row.value:g}: {why}"))
+    return others
 
 
 def _use_points(axle: str, placed: PlacedPoints, names: Collection[str], result: CarTable) -> None:

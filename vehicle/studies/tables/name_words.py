@@ -33,7 +33,7 @@ PLAIN: dict[str, str] = {
     "inboard": "inner", "inside": "inner", "innen": "inner", "innerer": "inner", "upr": "upper",
     "oben": "upper", "oberer": "upper", "obere": "upper", "top": "top", "tower": "top", "dom": "top", "lwr": "lower",
     "unten": "lower", "unterer": "lower", "untere": "lower", "bottom": "bottom", "fore": "front", "forward": "front",
-    "frt": "front", "vorn": "front", "vorne": "front", "vorderer": "front", "vordere": "front", "va": "front axle",
+    "frt": "front", "vorn": "front", "vorne": "front", "vorderer": "front", "vordere": "front", "va": "front axle", "fa": "front axle", "ra": "rear axle",
     "vorderachse": "front axle", "vorderrad": "front wheel", "rearward": "rear", "aft": "rear", "back": "rear",
     "rr_axle": "rear", "hinten": "rear", "hinterer": "rear", "hintere": "rear", "ha": "rear axle",
     "hinterachse": "rear axle", "rht": "right", "links": "left", "linke": "left", "rechts": "right", "rechte": "right",
@@ -105,7 +105,7 @@ class NameWords:
 
 def words_of(text: str) -> list[str]:
     """Return the plain words of a name, in order."""
-    plain = text.replace("Wheel Centre", "wheel center")
+    plain = text.replace("CoG", "cog").replace("CoM", "com")
     pieces = [piece.lower() for piece in _PIECES.findall(plain)]
     words: list[str] = []
     for piece in pieces:

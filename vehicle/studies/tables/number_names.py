@@ -53,7 +53,7 @@ PER_WHEEL = ("wheel", "corner", "side", "each", "one", "quarter", "single")
 
 QUANTITIES: dict[str, Quantity] = {
     "sprung_cog_height": _quantity("sprung cog height|sprung mass cog height|sprung cog z", LENGTH, (0.2, 1.5)),
-    "sprung_cog_x": _quantity("sprung cog|sprung mass cog|sprung cog x", LENGTH, (0.2, 5.0), of_axle=None,
+    "sprung_cog_x": _quantity("sprung cog|sprung mass cog|sprung cog x|spring mass cog", LENGTH, (0.2, 5.0), of_axle=None,
                               optional="mass distance behind longitudinal"),
     "sprung_roll_inertia": _quantity("sprung roll inertia|sprung inertia x|sprung inertia ixx|sprung ixx|sprung "
                                      "inertia xx", INERTIA, (50, 2e4), optional="mass moment"),
@@ -140,7 +140,8 @@ SYMBOLS: dict[str, tuple[str, str]] = {
 def number_of(name: NameWords) -> tuple[str, str, bool] | None:
     """Return key and axle of a number, and whether its name is a symbol; None for an unknown name."""
     symbol = "".join(letter for letter in name.text.lower() if letter.isalnum())
-    if symbol in SYMBOLS:
+    # A small l is the length of the car in CommonRoad.
+    if symbol in SYMBOLS and name.text != "l":
         key, axle = SYMBOLS[symbol]
         return key, axle or name.axle, True
     words = set(name.words)

@@ -6,10 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from vehicle.errors import DataError
+from vehicle.studies.tables.axes import stated_axes
 from vehicle.studies.tables.cells import CellTable, Row, read_cells
 from vehicle.studies.tables.name_words import AXLES, CORNERS, NameWords, name_words, right_letters, words_of
 from vehicle.studies.tables.number_names import number_of
 from vehicle.studies.tables.point_names import point_of
+from vehicle.studies.tables.tyre_file import TyreFile
 from vehicle.studies.tables.unit_factor import LENGTH, unit_factor
 
 
@@ -52,6 +54,7 @@ class Statements:
         points, numbers, curves: its rows.
         remarks: texts outside these rows, which may state units, axes and the origin.
         left_out: texts that are not understood, with their places.
+        tyre: tyre of a `.tir` file; None in other files.
     """
 
     file: str
@@ -60,6 +63,7 @@ class Statements:
     curves: list[Curve] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     left_out: list[tuple[str, str]] = field(default_factory=list)
+    tyre: TyreFile | None = None
 
 
 COLUMNS = {
@@ -138,7 +142,9 @@ class _Reader:
             elif cells[0].startswith(("#", "!", "%", "//")):
                 self._remark(" ".join(cells))
             elif not self._row(row):
-                if len(cells) > 1 and any(map(str.isdigit, " ".join(cells[1:]))):
+                text = " ".join(cells)
+                told = _length_unit(text) or "origin" in text.lower() or stated_axes([text], row.place)
+                if len(cells) > 1 and any(map(str.isdigit, " ".join(cells[1:]))) and not told:
                     self.found.left_out.append((row.place, f"{', '.join(cells)[:60]!r}: not understood"))
                 self._remark(" ".join(cells))
         for (_, axle, side), parts in self.coordinates.items():
