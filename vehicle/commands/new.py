@@ -122,8 +122,8 @@ class NewSettings(Settings):
         metavar="FILE.toml",
     )
     table: Sequence[Path] | None = setting(
-        "tables of the car: hardpoints, masses, rates, tyres with names and units (CSV, XLSX, .adm, .cmd, .urdf, .tir); "
-        "options and --numbers take precedence",
+        "tables of the car: hardpoints, masses, rates, tyres with names and units (CSV, XLSX, .adm, .cmd, .urdf, "
+        ".tir); options and --numbers take precedence",
         type=Path,
         nargs="+",
         metavar="FILE",
@@ -148,6 +148,7 @@ def _job(settings: NewSettings, console: Console) -> None:
     from vehicle.runs.car.motion_figures import motion_figures
     from vehicle.runs.output.folder import output_folder, write_files, write_text
     from vehicle.runs.output.free_names import named
+    from vehicle.studies.design.axle_types import AXLE_TYPES, axle_type_names, with_axles
     from vehicle.studies.design.new_car import new_car, template_files
     from vehicle.studies.design.stated_numbers import stated_numbers
     from vehicle.studies.design.template_car import template_car
@@ -177,7 +178,8 @@ def _job(settings: NewSettings, console: Console) -> None:
         raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
     given, template = None, template_car(source)
     if settings.table:
-        given = car_table(settings.table, template.point_names)
+        given = car_table(settings.table, template.point_names, {name: axle_type_names(name) for name in AXLE_TYPES})
+        template = with_axles(template, given.axles)
         stated = stated_numbers(settings.numbers, settings.stated, given.numbers)
     result = new_car(name, from_car, stated, given)
     with output_folder(folder, force=force) as temporary:

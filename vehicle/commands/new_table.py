@@ -23,13 +23,13 @@ def table_report(result: NewCar, template: TemplateCar, given: CarTable) -> list
         rows.append((name.replace("_", " "), given.origins.get(name, ""), shown))
     lines += aligned(rows, left=2)
     if given.points:
-        rows = [("point", "in the file", "x, y, z in the car [mm]", "from the template [mm]")]
+        points = [("point", "in the file", "x, y, z in the car [mm]", "from the template [mm]")]
         for word, (taken, _, before) in _points(result, template, given).items():
             for name, at in taken.items():
                 millimetres = ", ".join(f"{1e3 * value:.1f}" for value in at)
                 moved = f"{1e3 * math.dist(at, before[name]):.1f}"
-                rows.append((f"{word} {name}", given.origins.get((word, name), ""), millimetres, moved))
-        lines += ["", *aligned(rows, left=2)]
+                points.append((f"{word} {name}", given.origins.get((word, name), ""), millimetres, moved))
+        lines += ["", *aligned(points, left=2)]
         for word, (_, kept, _) in _points(result, template, given).items():
             if kept:
                 lines.append(

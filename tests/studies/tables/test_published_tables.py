@@ -1,4 +1,4 @@
-"""Tables of published cars: static loads and ride frequencies by hand, and the same car from the table of the new car."""
+"""Tables of published cars: loads and ride frequencies by hand, and the same car from the table of the new car."""
 
 import math
 

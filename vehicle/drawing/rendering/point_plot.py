@@ -32,7 +32,7 @@ def plot_points(path: Path, axles: Mapping[str, tuple[Points, Points, Points]], 
                 ):
                     across = [1e3 * point[right] for point in points.values()]
                     upward = [1e3 * point[up] for point in points.values()]
-                    axis.scatter(across, upward, s=26, zorder=3, **style)  # type: ignore[arg-type]
+                    axis.scatter(across, upward, s=26, zorder=3, **style)
                 for name, point in {**kept, **given}.items():
                     if name in template:
                         ends = [[1e3 * place[index] for place in (template[name], point)] for index in (right, up)]

@@ -14,6 +14,7 @@ from vehicle.model.parameters.template import own_templates
 from vehicle.model.parameters.value_sources import value_sources
 from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
+from vehicle.studies.design.axle_types import with_axles
 from vehicle.studies.design.car_class import POWERTRAIN, of_class, powertrain
 from vehicle.studies.design.car_file import vehicle_text
 from vehicle.studies.design.mass_balance import axle_loads, balanced, kerb_mass, kerb_model
@@ -99,6 +100,8 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, points: CarTab
     stated = with_tyre_size(stated, template, ratio)
     engine = powertrain(stated.car_class)
     template = template.with_powertrain(engine)
+    if points is not None:
+        template = with_axles(template, points.axles)
     table, sources = moved_points(template, stated)
     if points is not None:
         sources |= put_points(table, template, points)
@@ -133,7 +136,11 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, points: CarTab
     )
     text = vehicle_text(car.vehicle, header, sources, template.name, before)
     return NewCar(
-        car=car, text=text, checks=checks, parts=_parts(template, stated, ratio), notes=_notes(car, template, stated)
+        car=car,
+        text=text,
+        checks=checks,
+        parts=_parts(template, stated, ratio),
+        notes=_notes(car, template, stated, points),
     )
 
 
@@ -150,7 +157,8 @@ def _curves(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers,
     for word in AXLES:
         rows = None if points is None else points.curves.get(word)
         if (file := stated.of_axle("damper_curve", word)) is not None:
-            law, name = {"curve": str(Path(file).absolute())}, Path(file).name
+            law: dict[str, Any] = {"curve": str(Path(file).absolute())}
+            name = Path(file).name
         elif rows is not None and points is not None:
             law = {"velocity": [velocity for velocity, _ in rows], "force": [force for _, force in rows]}
             name = points.file
@@ -259,7 +267,7 @@ FOLLOWS: dict[str, tuple[str, ...]] = {
 """Stated numbers that a figure of the car follows from, without the word of an axle; all others are the template's."""
 
 
-def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> Iterator[str]:
+def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers, points: CarTable | None) -> Iterator[str]:
     """Yield a note with the origin of each figure outside the usual range; the loads of the car are left out."""
     kerb = new_car_of({key: value for key, value in car.vehicle.table.items() if key != "load"}, template)
     axle_words = {template.axle(word): word for word in AXLES}
@@ -273,15 +281,17 @@ def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> It
         origins = [f"follows from {stated.stated(name)}" if isinstance(getattr(stated, name), float) else
                    f"follows from {option(name)}" for name in names if getattr(stated, name) is not None]  # fmt: skip
         otherwise = f"from the template {template.name}"
+        if points is not None and not names and len(points.points.get(axle_words.get(figure.axle, ""), {})) > 1:
+            otherwise = f"from the points of {points.file}, others of the template {template.name}"
         if names:
             otherwise += f"; state {' or '.join(map(option, names))}"
         yield f"unusual: {figure}; {', '.join(origins) or otherwise}"
 
 
-def _notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[str, ...]:
+def _notes(car: Car, template: TemplateCar, stated: StatedNumbers, points: CarTable | None) -> tuple[str, ...]:
     """Return the notes: figures outside their usual ranges, and what is left out or kept."""
     return (
-        *_unusual_notes(car, template, stated),
+        *_unusual_notes(car, template, stated, points),
         *_tyre_notes(template, stated),
         *(f"left out from {template.name}: {text}" for text in template.left_out),
     )

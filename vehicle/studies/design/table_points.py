@@ -78,7 +78,7 @@ def put_parameters(table: dict[str, Any], template: TemplateCar, points: CarTabl
             numbers[2] = value
             put(table, {vector: numbers})  # type: ignore[dict-item]
         else:
-            put(table, {vector: value})  # type: ignore[dict-item]
+            put(table, {vector: value})
         sources[vector] = f"given: {origin}"
         beside = f"{vector.removesuffix('.mass')}.inertia"
         if vector.endswith(".mass") and isinstance(before.get("inertia"), list | tuple):

@@ -59,9 +59,12 @@ class TemplateCar:
 
     @property
     def point_names(self) -> dict[str, tuple[str, ...]]:
-        """Return the names of the hardpoints and of the parts of each axle by its word."""
+        """Return the names of the hardpoints of each axle by its word, and those of its parts as "parts.knuckle"."""
         axles = {word: self.table[self.axle(word)] for word in AXLES}
-        return {word: (*axle.get("hardpoints", {}), *axle.get("parts", {})) for word, axle in axles.items()}
+        return {
+            word: (*axle.get("hardpoints", {}), *(f"parts.{name}" for name in axle.get("parts", {})))
+            for word, axle in axles.items()
+        }
 
     def with_powertrain(self, engine: Mapping[str, Any] | None) -> TemplateCar:
         """Return the template with another powertrain; itself for None."""

@@ -44,7 +44,7 @@ def unloaded_radius(size: str) -> float:
 
 
 def with_tyre_size(stated: StatedNumbers, template: TemplateCar, ratio: float) -> StatedNumbers:
-    """Return stated numbers with the loaded radius of a tyre whose size or free radius is stated: free radius less F / k.
+    """Return stated numbers with the loaded radius of a tyre of stated size or free radius: free radius less F / k.
 
     F is the static load of a front wheel, stated or in proportion to the mass, k the stated stiffness of the front
     tyres, or that of the template, scaled as by `scaled_parts`; a stated wheel hop, which changes k, is left out.

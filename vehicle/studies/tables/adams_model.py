@@ -28,7 +28,7 @@ from vehicle.studies.tables.statements import Number, Point, Statements
 from vehicle.studies.tables.unit_factor import unit_factor
 
 _NAME = re.compile(r"adams_view_name\s*=\s*'([^']*)'", re.IGNORECASE)
-_VALUE = re.compile(r"[,\s]([A-Za-z_]+)\s*=\s*((?:[^=,]|,(?=\s*[-+.\d]))*)")
+_VALUE = re.compile(r"[,\s]([A-Za-z_]+)\s*=\s*(.*?)(?=[,\s]\s*[A-Za-z_]+\s*=|$)", re.DOTALL)
 _DECK = re.compile(r"(PART|MARKER|UNITS|POINT_MASS)/(\d*)(.*)", re.IGNORECASE | re.DOTALL)
 _COMMAND = re.compile(r"(point|marker|part) +(?:create|modify)(?: +rigid_body +\w+)?\b(.*)|defaults +units(.*)",
                       re.IGNORECASE | re.DOTALL)  # fmt: skip
@@ -78,10 +78,10 @@ def read_adams_model(path: Path) -> Statements:
             continue
         seen[key] = ground
         found.points.append(Point(place=place, name=words, at=(ground[0], ground[1], ground[2]), unit=model.length))
-    for part in model.parts.values():
-        if part.mass:
-            words = name_words(f"{part.name.replace('.', ' ')} mass", right_letter=letters.get(part.name, ""))
-            found.numbers.append(Number(place=str(path), name=words, value=part.mass, unit=model.mass or "kg"))
+    for body in model.parts.values():
+        if body.mass:
+            words = name_words(f"{body.name.replace('.', ' ')} mass", right_letter=letters.get(body.name, ""))
+            found.numbers.append(Number(place=str(path), name=words, value=body.mass, unit=model.mass or "kg"))
     if not (found.points or found.numbers):
         raise DataError(f"{path}: has no point or part with a known name; export the hardpoints as a table (CSV)")
     if not model.length:
@@ -129,7 +129,7 @@ def _numbers(text: str | None) -> Vector:
         except ValueError:
             return np.full(3, math.nan)
         values.append(math.radians(value) if degrees else value)
-    return np.array((values + [0.0, 0.0])[:3])
+    return np.array([*values, 0.0, 0.0][:3])
 
 
 def _turn(angles: Vector) -> Vector:

@@ -64,8 +64,8 @@ def stated_axes(remarks: Sequence[str], file: str) -> dict[str, str]:
     for remark in remarks:
         text = remark.lower()
         for axis, directions_of in _WORDS.items():
-            for match in re.finditer(rf"(?<![a-z])\+?{axis}\+?(?:[- ]axis)?(?: is| points|:|=|,)?(?: positive)?(?: to(?:wards)?)?"
-                                     rf"(?: the)?[ ,]+(?:driver's )?([a-zäöü]+)", text):  # fmt: skip
+            for match in re.finditer(rf"(?<![a-z])\+?{axis}\+?(?:[- ]axis)?(?: is| points|:|=|,)?(?: positive)?"
+                                     rf"(?: to(?:wards)?)?(?: the)?[ ,]+(?:driver's )?([a-zäöü]+)", text):  # fmt: skip
                 for direction, words in directions_of.items():
                     if match[1] in words.split():
                         enter(axis, direction)

@@ -135,8 +135,8 @@ def _by_axle(found: Statements, known: list[tuple[str, Point]], scale, placed: P
         default = "front" if not named else named.pop() if len(named) == 1 else ""
         if not default:
             lost = next(point for _, point in known if not point.name.axle)
-            raise DataError(f"{lost.place}: {lost.name.text!r} does not say which axle it belongs to; add a column axle, "
-                            "or begin its name with front or rear")  # fmt: skip
+            raise DataError(f"{lost.place}: {lost.name.text!r} does not say which axle it belongs to; add a column "
+                            "axle, or begin its name with front or rear")  # fmt: skip
         placed.guessed.append(("", f"points that name no axle: {default} axle"))
     groups: dict[str, dict[str, dict[str, tuple[Vector3, Point]]]] = {}
     for key, point in known:

@@ -11,10 +11,11 @@ from typing import Any
 from vehicle.errors import DataError
 from vehicle.studies.tables.axes import Vector3
 from vehicle.studies.tables.axle_points import PlacedPoints, placed_points
-from vehicle.studies.tables.car_numbers import AXLES, CarNumbers, car_numbers, read_numbers
-from vehicle.studies.tables.point_names import OF_OTHER_AXLES, TEMPLATE_NAMES
+from vehicle.studies.tables.car_numbers import car_numbers
+from vehicle.studies.tables.point_names import OF_OTHER_AXLES, TEMPLATE_NAMES, point_of
 from vehicle.studies.tables.statements import Number, Statements
 from vehicle.studies.tables.table_file import file_statements
+from vehicle.studies.tables.table_numbers import AXLES, CarNumbers, read_numbers
 from vehicle.studies.tables.tyre_file import TyreFile
 from vehicle.studies.tables.unit_factor import unit_factor
 
@@ -32,6 +33,7 @@ class CarTable:
         origins: rows behind each number, by name, and behind each point, by axle and name.
         guessed, left_out: sentences, each with its place in the file or "".
         axes: axes of the points in words; "" without points.
+        axles: types of axles in place of those of the template, by axle.
         tyre: tyre of a `.tir` file, for its slip stiffness under the load of the car.
     """
 
@@ -45,18 +47,23 @@ class CarTable:
     left_out: list[tuple[str, str]] = field(default_factory=list)
     axes: str = ""
     tyre: TyreFile | None = None
+    axles: dict[str, str] = field(default_factory=dict)
 
     def origin(self, axle: str, name: str) -> str:
         """Return the name of a point in the file, for the source of its coordinates."""
         return f"{self.origins[axle, name]} of {self.file}"
 
 
-def car_table(paths: Sequence[Path], names: Mapping[str, Collection[str]]) -> CarTable:
+def car_table(
+    paths: Sequence[Path], names: Mapping[str, Collection[str]], types: Mapping[str, Collection[str]] | None = None
+) -> CarTable:
     """Read what one or several files state of one car.
 
     Args:
         paths: files; each may have points in axes of its own.
         names: names of the hardpoints and parts of the template by axle, "front" and "rear".
+        types: the same of other types of axles, by the names of their templates; one replaces the axle of the template
+            where the file has all points of its arms.
 
     Raises:
         ConfigurationError: a file is missing or of a kind that is not read.
@@ -73,6 +80,7 @@ def car_table(paths: Sequence[Path], names: Mapping[str, Collection[str]]) -> Ca
             if result.tyre is not None:
                 raise DataError(f"{found.file}: a second tyre file; give one, both axles have the same tyre")
             result.tyre = found.tyre
+    names = _with_types(files, names, types or {}, result)
     whole.numbers = _without_parts(whole.numbers, names, result)
     values = read_numbers(whole, numbers)
     radius, track = ({axle: entry.value * factor for axle in AXLES
@@ -90,9 +98,29 @@ def car_table(paths: Sequence[Path], names: Mapping[str, Collection[str]]) -> Ca
     result.left_out += numbers.left_out
     if not (result.numbers or result.points or result.curves or result.parameters):
         some = "; ".join(text for _, text in result.left_out[:3])
-        raise DataError(f"{whole.file}: nothing in it is a number or a point of a car{f' ({some})' if some else ''}; name "
-                        "rows as in docs: howto/table")  # fmt: skip
+        raise DataError(f"{whole.file}: nothing in it is a number or a point of a car{f' ({some})' if some else ''}; "
+                        "name rows as in docs/howto/table.md")  # fmt: skip
     return result
+
+
+ARMS = ("lower_ball", "lower_arm_front", "lower_arm_rear", "upper_ball", "upper_arm_front", "upper_arm_rear")
+"""Points that make an axle one of double wishbones."""
+
+
+def _with_types(files: Sequence[Statements], names: Mapping[str, Collection[str]],
+                types: Mapping[str, Collection[str]], result: CarTable) -> dict[str, Collection[str]]:  # fmt: skip
+    """Return the names of hardpoints and parts by axle, of another type where the points of a file need it."""
+    changed = dict(names)
+    rows = [point for found in files for point in found.points]
+    only = {point.name.axle for point in rows} == {""}
+    for axle in AXLES:
+        keys = {point_of(point.name) for point in rows if point.name.axle == axle or (only and axle == "front")}
+        if set(ARMS) <= keys and "upper_ball" not in names[axle] and "double_wishbone" in types:
+            changed[axle] = types["double_wishbone"]
+            result.axles[axle] = "double_wishbone"
+            result.guessed.append(("", f"{axle} axle: double wishbones, in place of the axle of the template; "
+                                   "its bushings, masses and points that the file lacks are assumed"))  # fmt: skip
+    return changed
 
 
 def _place(found: Statements, radius: Mapping[str, float], track: Mapping[str, float],
@@ -140,7 +168,7 @@ def _without_parts(rows: Sequence[Number], names: Mapping[str, Collection[str]],
             others.append(row)
             continue
         axle = row.name.axle
-        part = next((name for name in PARTS[words] if axle and name in names[axle]), "")
+        part = next((name for name in PARTS[words] if axle and f"parts.{name}" in names[axle]), "")
         if part:
             result.parameters[axle, f"parts.{part}.mass"] = (row.value * unit.factor, f"{row.name.text} ({row.place})")
         else:
@@ -155,8 +183,8 @@ def _use_points(axle: str, placed: PlacedPoints, names: Collection[str], result:
     own = {key: next((name for name in TEMPLATE_NAMES[key] if name in names), "") for key in points.at}
     other = sorted({OF_OTHER_AXLES[key] for key, name in own.items() if not name and key in OF_OTHER_AXLES})
     if other:
-        result.left_out.append(("", f"points of the {axle} axle but its wheel centre: the {axle} axle of the template has "
-                                f"not {' and '.join(other)}; start from a car with such an axle (--from)"))  # fmt: skip
+        result.left_out.append(("", f"points of the {axle} axle but its wheel centre: that of the template has no "
+                                f"{' and no '.join(other)}; start from a car with such an axle (--from)"))  # fmt: skip
         own = {key: name if key in ("wheel_center", "tyre_patch") else "" for key, name in own.items()}
     used: dict[str, Vector3] = {}
     for key, name in own.items():
@@ -166,11 +194,15 @@ def _use_points(axle: str, placed: PlacedPoints, names: Collection[str], result:
             result.origins[axle, name] = text
         elif not other:
             result.left_out.append((place, f"{text!r}: the {axle} axle of the template has no such point"))
+    if {"damper_upper", "damper_lower"} <= set(used) and axle in result.axles and "spring_lower" not in used:
+        used |= {"spring_upper": used["damper_upper"], "spring_lower": used["damper_lower"]}
+        result.origins |= {(axle, name): "around the damper" for name in ("spring_upper", "spring_lower")}
+        result.guessed.append(("", f"{axle} spring: around the damper, as its seats are not in the file"))
     result.points[axle] = used
 
 
 def _has_spring(points: Mapping[str, Vector3]) -> bool:
-    """True if the points of an axle place its spring and the arm that leads the wheel, so a rate is one of the spring."""
+    """True if the points of an axle place its spring and the arm that leads the wheel."""
     seats = "strut_top" in points or {"spring_lower", "spring_upper"} <= set(points)
     return seats and bool({"lower_ball", "pivot"} & set(points))
 

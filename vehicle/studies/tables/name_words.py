@@ -33,7 +33,8 @@ PLAIN: dict[str, str] = {
     "inboard": "inner", "inside": "inner", "innen": "inner", "innerer": "inner", "upr": "upper",
     "oben": "upper", "oberer": "upper", "obere": "upper", "top": "top", "tower": "top", "dom": "top", "lwr": "lower",
     "unten": "lower", "unterer": "lower", "untere": "lower", "bottom": "bottom", "fore": "front", "forward": "front",
-    "frt": "front", "vorn": "front", "vorne": "front", "vorderer": "front", "vordere": "front", "va": "front axle", "fa": "front axle", "ra": "rear axle",
+    "frt": "front", "vorn": "front", "vorne": "front", "vorderer": "front", "vordere": "front", "va": "front axle",
+    "fa": "front axle", "ra": "rear axle",
     "vorderachse": "front axle", "vorderrad": "front wheel", "rearward": "rear", "aft": "rear", "back": "rear",
     "rr_axle": "rear", "hinten": "rear", "hinterer": "rear", "hintere": "rear", "ha": "rear axle",
     "hinterachse": "rear axle", "rht": "right", "links": "left", "linke": "left", "rechts": "right", "rechte": "right",
@@ -50,17 +51,19 @@ PLAIN: dict[str, str] = {
     "schwerpunkthöhe": "cog height", "schwerpunktshöhe": "cog height", "höhe": "height", "hoehe": "height",
     "trägheitsmoment": "inertia", "massenträgheitsmoment": "inertia", "moi": "inertia", "wheelrate": "wheel rate",
     "tyrerate": "tyre rate", "springrate": "spring rate", "radlast": "wheel load", "achslast": "axle load",
-    "rolling": "roll", "wank": "roll", "wanken": "roll", "nick": "pitch", "nicken": "pitch", "gieren": "yaw", "gier": "yaw", "halbmesser": "radius",
+    "rolling": "roll", "wank": "roll", "wanken": "roll", "nick": "pitch", "nicken": "pitch", "gieren": "yaw",
+    "gier": "yaw", "halbmesser": "radius",
     "eigenfrequenz": "frequency", "übersetzung": "ratio", "corners": "corner", "wheels": "wheel", "ibs": "",
     "frequencies": "frequency", "natural": "", "vertical": "", "radial": "", "installation": "motion",
 }  # fmt: skip
 """Word in small letters -> plain words; "" for a word without meaning here."""
 
-NOISE = frozenset(
-    "hp pt point points joint location loc coordinate position pos mount mounting bushing bush pivot attachment attach "
-    "the of at on to in a an and for from with per value its sub fixed about axis around der die das am an im "
-    "des mdl model ground coefficient design nominal static".split()
-)
+NOISE = frozenset({
+    "hp", "pt", "point", "points", "joint", "location", "loc", "coordinate", "position", "pos", "mount", "mounting",
+    "bushing", "bush", "pivot", "attachment", "attach", "the", "of", "at", "on", "to", "in", "a", "an", "and", "for",
+    "from", "with", "per", "value", "its", "sub", "fixed", "about", "axis", "around", "der", "die", "das", "am",
+    "im", "des", "mdl", "model", "ground", "coefficient", "design", "nominal", "static",
+})  # fmt: skip
 """Words that do not tell one point from another."""
 
 CORNERS = {"fl": ("front", "left"), "fr": ("front", "right"), "lf": ("front", "left"), "rf": ("front", "right"),
@@ -168,7 +171,10 @@ def name_words(text: str, *, right_letter: str, place: str = "") -> NameWords:
 
 
 def right_letters(names: Sequence[str]) -> dict[str, str]:
-    """Return by name what a single letter "r" in it means: "right" beside the same name with "l", "rear" with "f"."""
+    """Return by name what a single letter "r" in it means: "right" beside the same name with "l", "rear" with "f".
+
+    A name that ends with a single "l" is one of the left side, so "right" too: WC_L, but not L_TRACK.
+    """
     pieces = {name: tuple(piece.lower() for piece in _PIECES.findall(name)) for name in names}
     known = set(pieces.values())
 
@@ -176,7 +182,11 @@ def right_letters(names: Sequence[str]) -> dict[str, str]:
         return tuple(letter if part in ("l", "r") else part for part in parts)
 
     return {
-        name: "right" if swapped(parts, "l") in known else "rear" if swapped(parts, "f") in known else ""
+        name: "right"
+        if parts[-1:] == ("l",) or {swapped(parts, "l"), swapped(parts, "r")} <= known
+        else "rear"
+        if swapped(parts, "f") in known
+        else ""
         for name, parts in pieces.items()
         if "r" in parts or "l" in parts
     }

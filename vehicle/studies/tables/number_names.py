@@ -53,7 +53,8 @@ PER_WHEEL = ("wheel", "corner", "side", "each", "one", "quarter", "single")
 
 QUANTITIES: dict[str, Quantity] = {
     "sprung_cog_height": _quantity("sprung cog height|sprung mass cog height|sprung cog z", LENGTH, (0.2, 1.5)),
-    "sprung_cog_x": _quantity("sprung cog|sprung mass cog|sprung cog x|spring mass cog", LENGTH, (0.2, 5.0), of_axle=None,
+    "sprung_cog_x": _quantity("sprung cog|sprung mass cog|sprung cog x|spring mass cog", LENGTH, (0.2, 5.0),
+                              of_axle=None,
                               optional="mass distance behind longitudinal"),
     "sprung_roll_inertia": _quantity("sprung roll inertia|sprung inertia x|sprung inertia ixx|sprung ixx|sprung "
                                      "inertia xx", INERTIA, (50, 2e4), optional="mass moment"),
@@ -116,7 +117,8 @@ QUANTITIES: dict[str, Quantity] = {
 SYMBOLS: dict[str, tuple[str, str]] = {
     "m": ("kerb_mass", ""), "mass": ("kerb_mass", ""), "mv": ("kerb_mass", ""), "mtot": ("kerb_mass", ""),
     "ms": ("sprung_mass", ""), "msu": ("sprung_mass", ""), "mb": ("sprung_mass", ""),
-    "muf": ("unsprung_mass", "front"), "mur": ("unsprung_mass", "rear"), "musf": ("unsprung_mass", "front"),
+    "mus": ("unsprung_mass", ""), "muf": ("unsprung_mass", "front"), "mur": ("unsprung_mass", "rear"),
+    "musf": ("unsprung_mass", "front"),
     "musr": ("unsprung_mass", "rear"), "a": ("cog_x", "front"), "lf": ("cog_x", "front"), "l1": ("cog_x", "front"),
     "b": ("cog_x", "rear"), "lr": ("cog_x", "rear"), "l2": ("cog_x", "rear"), "l": ("wheelbase", ""),
     "wb": ("wheelbase", ""), "lxaxle": ("wheelbase", ""), "h": ("cog_height", ""), "hcg": ("cog_height", ""),
@@ -132,7 +134,7 @@ SYMBOLS: dict[str, tuple[str, str]] = {
     "cs": ("wheel_damping", ""), "kt": ("tyre_rate", ""), "kzt": ("tyre_rate", ""), "ktf": ("tyre_rate", "front"),
     "ktr": ("tyre_rate", "rear"), "rw": ("tyre_radius", ""), "rre": ("tyre_radius", ""), "r0": ("free_radius", ""),
     "mr": ("motion_ratio", ""), "mrf": ("motion_ratio", "front"), "mrr": ("motion_ratio", "rear"),
-    "kspring": ("spring_rate", ""), "wheelbase": ("wheelbase", ""),
+    "kspring": ("spring_rate", ""), "kspringl": ("spring_rate", ""), "wheelbase": ("wheelbase", ""),
 }  # fmt: skip
 """Symbol without signs, in small letters -> number and axle: lumped models, CommonRoad, CarSim."""
 
@@ -143,7 +145,7 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
     # A small l is the length of the car in CommonRoad.
     if symbol in SYMBOLS and name.text != "l":
         key, axle = SYMBOLS[symbol]
-        return key, axle or name.axle, True
+        return key, "" if QUANTITIES[key].of_axle is False else axle or name.axle, True
     words = set(name.words)
     for key, quantity in QUANTITIES.items():
         if (quantity.of_axle is True and not name.axle) or (quantity.of_axle is False and name.axle):

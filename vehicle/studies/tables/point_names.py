@@ -26,13 +26,13 @@ TEMPLATE_NAMES: dict[str, tuple[str, ...]] = {
 """Point -> its names in the templates of axles."""
 
 OF_OTHER_AXLES = {
-    "upper_ball": "an upper arm",
-    "upper_arm_front": "an upper arm",
-    "upper_arm_rear": "an upper arm",
-    "lower_ball": "a lower arm",
-    "lower_arm_front": "a lower arm",
-    "lower_arm_rear": "a lower arm",
-    "trailing_pivot": "trailing arms",
+    "upper_ball": "upper arm",
+    "upper_arm_front": "upper arm",
+    "upper_arm_rear": "upper arm",
+    "lower_ball": "lower arm",
+    "lower_arm_front": "lower arm",
+    "lower_arm_rear": "lower arm",
+    "trailing_pivot": "trailing arm",
 }
 """Points that only some axles have, and what they belong to: without a place for them the axle is of another type."""
 

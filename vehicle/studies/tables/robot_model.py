@@ -18,7 +18,7 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.text import read_text
-from vehicle.studies.tables.name_words import NameWords, name_words
+from vehicle.studies.tables.name_words import NameWords
 from vehicle.studies.tables.statements import Number, Point, Statements
 
 FRAME = "axes: x forward, y left, z up"
@@ -67,7 +67,8 @@ def read_robot_model(path: Path) -> Statements:
 def _statements(path: Path, links: dict[str, _Link]) -> Statements:
     places = {name: _place(path, links, name) for name in links}
     wheels = [name for name, link in links.items() if "wheel" in name.lower() and link.mass > 0.0
-              and not any(other.parent == name and "wheel" in other.name.lower() for other in links.values())]  # fmt: skip
+              and not any(other.parent == name and "wheel" in other.name.lower()
+                          for other in links.values())]  # fmt: skip
     if len(wheels) != 4:
         raise DataError(
             f"{path}: has {len(wheels)} links with a mass and 'wheel' in their names, must be 4; rename them"
@@ -80,7 +81,7 @@ def _statements(path: Path, links: dict[str, _Link]) -> Statements:
         raise DataError(f"{path}: wheels are not at two axles along x; URDF has x forward, y left, z up")
     mass = sum(link.mass for link in links.values())
     cogs = {name: places[name][0] + places[name][1] @ link.cog for name, link in links.items()}
-    cog = sum(link.mass * cogs[name] for name, link in links.items()) / mass
+    cog = np.sum([link.mass * cogs[name] for name, link in links.items()], axis=0) / mass
     inertia = np.zeros((3, 3))
     for name, link in links.items():
         turn, arm = places[name][1], cogs[name] - cog
@@ -88,7 +89,7 @@ def _statements(path: Path, links: dict[str, _Link]) -> Statements:
     found = Statements(file=path.name, remarks=[FRAME])
 
     def number(words: str, value: float, unit: str, axle: str = "") -> None:
-        name = NameWords(text=f"{words} {axle}".strip(), words=tuple(words.split()), axle=axle, side="")
+        name = NameWords(text=f"{words} {axle} axle" if axle else words, words=tuple(words.split()), axle=axle, side="")
         found.numbers.append(Number(place=str(path), name=name, value=round(value, 9), unit=unit))
 
     number("kerb mass", mass, "kg")
@@ -100,11 +101,10 @@ def _statements(path: Path, links: dict[str, _Link]) -> Statements:
         if radius:
             number("tyre radius loaded", radius, "m", axle)
         for name in names:
-            words = name_words("wheel center", right_letter="")
             side = "left" if centers[name][1] > 0.0 else "right"
-            place = NameWords(text=name, words=words.words, axle=axle, side=side)
+            named = NameWords(text=name, words=("wheel", "center"), axle=axle, side=side)
             at = centers[name]
-            found.points.append(Point(place=str(path), name=place, at=(at[0], at[1], at[2]), unit="m"))
+            found.points.append(Point(place=str(path), name=named, at=(at[0], at[1], at[2]), unit="m"))
     whole = NameWords(text="centre of gravity of all links", words=("cog",), axle="front", side="")
     found.points.append(Point(place=str(path), name=whole, at=(cog[0], cog[1], cog[2]), unit="m"))
     return found

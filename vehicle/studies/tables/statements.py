@@ -67,8 +67,8 @@ class Statements:
 
 
 COLUMNS = {
-    "name": "name point hardpoint parameter quantity description bezeichnung punkt variable item property symbol "
-            "location element groesse größe kenngröße",
+    "name": "keyword name point hardpoint parameter quantity description bezeichnung punkt variable item property "
+            "symbol location element groesse größe kenngröße",
     "unit": "unit units einheit",
     "value": "value wert val values",
     "side": "side symmetry seite",
@@ -81,6 +81,10 @@ KINDS = {word: kind for kind, words in COLUMNS.items() for word in words.split()
 _COORDINATE = re.compile(r"(?:loc|pos|coord|coordinate)?[ _]*([xyz])(?:[ _]*(?:value|coordinate|coord|pos|loc))?", re.I)
 _UNIT_AT_END = re.compile(r"^(.*?)[\s_]*(?:\[([^\]]*)\]|\(([^)]*)\)|,\s*([^,\s]+)|[ _](mm|cm|inch|kg))$")
 _WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%°\"(/].*)")
+_AXLE_TITLE = re.compile(r"\b(front|rear) (axle|suspension|hardpoints)\b|\b(vorder|hinter)achse", re.IGNORECASE)
+_OF_UNITS = re.compile(
+    r"\bunits?\b|\beinheit|\[(mm|cm|m|in|inch)\]|\(mm\)|\bin mm\b|\bin millimet|\ball\b.*\bmm\b|\blength"
+)
 TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
 
 
@@ -95,12 +99,13 @@ def name_and_unit(cell: str) -> tuple[str, str]:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class _Heads:
-    """Header of a block: index of each column by its kind, and units by the same keys; axle words for values."""
+    """Header of a block: index and unit of each column by its kind, axles of values, columns of names."""
 
     columns: dict[str, int]
     units: dict[str, str]
     axles: dict[int, tuple[str, str]]
     width: int
+    names: list[int]
 
 
 def statements(path: Path) -> Statements:
@@ -140,13 +145,13 @@ class _Reader:
             if not cells:
                 self.heads = None
             elif cells[0].startswith(("#", "!", "%", "//")):
-                self._remark(" ".join(cells))
+                self._remark(" ".join(cells), title=False)
             elif not self._row(row):
                 text = " ".join(cells)
-                told = _length_unit(text) or "origin" in text.lower() or stated_axes([text], row.place)
+                told = bool(_length_unit(text) or "origin" in text.lower() or stated_axes([text], row.place))
                 if len(cells) > 1 and any(map(str.isdigit, " ".join(cells[1:]))) and not told:
                     self.found.left_out.append((row.place, f"{', '.join(cells)[:60]!r}: not understood"))
-                self._remark(" ".join(cells))
+                self._remark(text, title=not told)
         for (_, axle, side), parts in self.coordinates.items():
             self._joined(parts, axle, side)
 
@@ -179,6 +184,7 @@ class _Reader:
         columns: dict[str, int] = {}
         units: dict[str, str] = {}
         axles: dict[int, tuple[str, str]] = {}
+        names: list[int] = []
         for index, cell in enumerate(row.cells):
             text, unit = name_and_unit(cell)
             plain = words_of(text)
@@ -192,6 +198,8 @@ class _Reader:
             elif not kind and plain and set(plain) <= {*AXLES, "axle", *CORNERS, "f", "r", "value"}:
                 word = next((word for word in plain if word in (*AXLES, *CORNERS, "f", "r")), "")
                 axles[index] = CORNERS.get(word, ({"f": "front", "r": "rear"}.get(word, word), ""))
+            if kind == "name":
+                names.append(index)
             if kind and kind not in columns:
                 columns[kind] = index
                 units[kind] = unit
@@ -204,7 +212,7 @@ class _Reader:
         if "name" not in columns:
             free = [index for index in range(len(row.cells)) if index not in {*columns.values(), *axles}]
             columns["name"] = free[0] if free else 0
-        self.heads = _Heads(columns=columns, units=units, axles=axles, width=len(row.cells))
+        self.heads = _Heads(columns=columns, units=units, axles=axles, width=len(row.cells), names=names)
         return True
 
     def _point_row(self, row: Row, values: Sequence[float | None]) -> bool:
@@ -228,6 +236,10 @@ class _Reader:
             (index for index, cell in enumerate(row.cells) if cell and values[index] is None), -1)  # fmt: skip
         if at < 0 or at >= len(row.cells) or not row.cells[at]:
             raise DataError(f"{row.place}: {', '.join(filter(None, row.cells))} has no name; name each row of numbers")
+        if heads is not None and len(heads.names) > 1:
+            # A symbol and its description: the first one that is known.
+            others = [index for index in heads.names if index < len(row.cells) and row.cells[index]]
+            at = next((index for index in others if number_of(self._name(row, name_and_unit(row.cells[index])[0]))), at)
         text, unit = name_and_unit(row.cells[at])
         unit = self._cell(row, "unit") or unit
         skipped = set() if heads is None else {heads.columns[key] for key in ("unit", "skip") if key in heads.columns}
@@ -255,7 +267,8 @@ class _Reader:
             self._add_number(row, self._name(row, text), number, joined[2])
             return True
         index, value = after[0]
-        if not unit and index + 1 < len(row.cells) and unit_factor(row.cells[index + 1].strip("()[]")) is not None:
+        if index + 1 < len(row.cells) and unit_factor(row.cells[index + 1].strip("()[]")) is not None:
+            # "sprung mass (ms), 1250, kg": the cell behind the value takes precedence.
             unit = row.cells[index + 1]
         self._add_number(row, self._name(row, text), value, unit)
         return True
@@ -295,8 +308,11 @@ class _Reader:
     def _name(self, row: Row, text: str, axle: str = "", side: str = "") -> NameWords:
         """Return the words of a name, with axle and side of its columns, its column head or the title above."""
         letter = self.letters.get(row.cells[0], self.letters.get(text, ""))
+        if index := re.search(r"\(([12])\)$", text):
+            # CarSim counts axles: L_TRACK(2).
+            text, axle = text[: index.start()], AXLES[int(index[1]) - 1]
         name = name_words(text, right_letter=letter, place=row.place)
-        if point_of(name) is None and number_of(name) is None and "(" in text:
+        if point_of(name) in (None, "cog") and number_of(name) is None and "(" in text:
             name = name_words(re.sub(r"\([^)]*\)", " ", text), right_letter=letter, place=row.place)
         column = words_of(self._cell(row, "axle"))
         axle = axle or next((word for word in column if word in AXLES), "")
@@ -310,12 +326,14 @@ class _Reader:
         index = None if self.heads is None else self.heads.columns.get(kind)
         return row.cells[index] if index is not None and index < len(row.cells) else ""
 
-    def _remark(self, text: str) -> None:
+    def _remark(self, text: str, *, title: bool) -> None:
         """Keep a text; a title such as "Front axle [mm]" holds for the rows below."""
         self.found.remarks.append(text)
         self.curve = []
-        if not text.startswith(("#", "!", "%", "//")):
+        if title:
             self._title(text)
+        elif match := _AXLE_TITLE.search(text):
+            self.axle = "front" if match[0].lower()[0] in "fv" else "rear"
         if unit := _length_unit(text):
             self.unit = unit
 
@@ -335,7 +353,7 @@ def _length_unit(text: str) -> str:
 
 def _units(text: str) -> Iterator[str]:
     lowered = text.lower()
-    stated = re.search(r"\bunits?\b|\beinheit|\[(mm|cm|m|in|inch)\]|\(mm\)|\bin mm\b|\bin millimet|\ball\b.*\bmm\b|\blength", lowered)  # fmt: skip
+    stated = _OF_UNITS.search(lowered)
     if stated:
         for word in re.findall(r"[a-z]+", lowered[stated.start() :]):
             unit = unit_factor(word)

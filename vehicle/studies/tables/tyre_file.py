@@ -28,11 +28,12 @@ READ = {"5": "MF-Tyre 5", "51": "MF-Tyre 5.1", "52": "MF-Tyre 5.2", "6": "PAC200
 FORMATS = {"MF_05": "52", "PAC2002": "6", "MF-TYRE": "52", "MF52": "52", "MF61": "61", "MF62": "62"}
 """FITTYP by PROPERTY_FILE_FORMAT, where FITTYP is missing."""
 
-USED = frozenset(
-    "FNOMIN PKX1 PKX2 PKX3 PPX1 PPX2 PKY1 PKY2 PKY4 PPY1 PPY2 QDZ1 QDZ2 PPZ1 PTX1 PTY1 PTY2 LFZO LKX LKY LTR LSGKP "
-    "LSGAL LCZ UNLOADED_RADIUS VERTICAL_STIFFNESS VERTICAL_DAMPING LONGITUDINAL_STIFFNESS LATERAL_STIFFNESS INFLPRES "
-    "NOMPRES PFZ1".split()
-)
+USED = frozenset({
+    "FNOMIN", "PKX1", "PKX2", "PKX3", "PPX1", "PPX2", "PKY1", "PKY2", "PKY4", "PPY1", "PPY2", "QDZ1", "QDZ2", "PPZ1",
+    "PTX1", "PTY1", "PTY2", "LFZO", "LKX", "LKY", "LTR", "LSGKP", "LSGAL", "LCZ", "UNLOADED_RADIUS",
+    "VERTICAL_STIFFNESS", "VERTICAL_DAMPING", "LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS", "INFLPRES", "NOMPRES",
+    "PFZ1",
+})  # fmt: skip
 """Coefficients that count here."""
 
 BLOCKS = ("COEFFICIENTS", "VERTICAL", "STRUCTURAL", "OVERTURNING", "ROLLING", "ALIGNING", "LATERAL", "LONGITUDINAL",
@@ -135,8 +136,8 @@ def read_tyre_file(path: Path) -> TyreFile:
     fit = values.get("FITTYP", "").split(".")[0].strip() or FORMATS.get(name, "")
     if fit not in READ or name in OTHER_MODELS:
         raise DataError(
-            f"{path}: is of the tyre model {name or fit or 'without FITTYP in [MODEL]'}, which is not read; fit or export "
-            f"the tyre as one of {', '.join(READ.values())} (FITTYP {', '.join(READ)})"
+            f"{path}: is of the tyre model {name or fit or 'without FITTYP in [MODEL]'}, which is not read; fit or "
+            f"export the tyre as one of {', '.join(READ.values())} (FITTYP {', '.join(READ)})"
         )
     coefficients, unused = _coefficients(found)
     tyre = TyreFile(file=path.name, model=READ[fit], fit=fit, coefficients=coefficients, unused=unused)
