@@ -22,8 +22,8 @@ BAR = 700.0
 def axle_type_names(name: str) -> tuple[str, ...]:
     """Return the names of the hardpoints and parts of a type, as `TemplateCar.point_names`."""
     axle = AXLE_TYPES[name]
-    parts = (*axle["parts"], *OF_WHEEL)
-    return ("wheel_center", "tyre_patch", *axle["hardpoints"], *(f"parts.{part}" for part in parts))
+    others = [f"{kind}.{part}" for kind in ("parts", "bushings") for part in axle[kind]]
+    return ("wheel_center", "tyre_patch", *axle["hardpoints"], *others, *(f"parts.{part}" for part in OF_WHEEL))
 
 
 def with_axles(template: TemplateCar, types: Mapping[str, str]) -> TemplateCar:

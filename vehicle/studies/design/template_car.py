@@ -59,10 +59,13 @@ class TemplateCar:
 
     @property
     def point_names(self) -> dict[str, tuple[str, ...]]:
-        """Return the names of the hardpoints of each axle by its word, and those of its parts as "parts.knuckle"."""
+        """Return the names of the hardpoints of each axle, and those of its parts and bushings as "parts.knuckle"."""
         axles = {word: self.table[self.axle(word)] for word in AXLES}
         return {
-            word: (*axle.get("hardpoints", {}), *(f"parts.{name}" for name in axle.get("parts", {})))
+            word: (
+                *axle.get("hardpoints", {}),
+                *(f"{kind}.{name}" for kind in ("parts", "bushings") for name in axle.get(kind, {})),
+            )
             for word, axle in axles.items()
         }
 

@@ -121,8 +121,8 @@ def _masses(table: _Numbers) -> None:
         total = whole + unsprung["front"] + unsprung["rear"]
         if kerb is not None and abs(total / kerb - 1.0) > AGREE:
             raise DataError(f"sprung mass {whole:g} kg and unsprung masses {unsprung['front']:g} and "
-                            f"{unsprung['rear']:g} kg: together {total:g} kg instead of the mass of {kerb:g} kg; correct "
-                            "one (unsprung masses: of an axle or of a wheel?)")  # fmt: skip
+                            f"{unsprung['rear']:g} kg: together {total:g} kg instead of the mass of {kerb:g} kg; "
+                            "correct one (unsprung masses: of an axle or of a wheel?)")  # fmt: skip
         kerb = total if kerb is None else kerb
         table.put("kerb_mass", kerb, ("kerb_mass", ""), ("sprung_mass", ""), why="with the unsprung masses")
     elif kerb is not None:
@@ -253,8 +253,8 @@ def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
             table.put(f"spring_stiffness_{axle}", spring, why, ("spring_rate", ""))
         else:
             wheel = spring
-            table.guess(*why, f"{key_words(*why)}: at the wheel (motion ratio 1), as neither a motion ratio nor the points "
-                        "of spring and arm are stated")  # fmt: skip
+            table.guess(*why, f"{key_words(*why)}: at the wheel (motion ratio 1), as neither a motion ratio nor "
+                        "the points of spring and arm are stated")  # fmt: skip
     elif spring is not None and wheel is not None and ratio is None and not at_spring:
         table.result.left_out.append(("", f"{key_words('spring_rate', axle)}: the wheel rate is stated too"))
     if wheel is not None:

@@ -12,6 +12,7 @@ from vehicle.errors import DataError
 from vehicle.studies.tables.axes import Vector3
 from vehicle.studies.tables.axle_points import PlacedPoints, placed_points
 from vehicle.studies.tables.car_numbers import car_numbers
+from vehicle.studies.tables.number_names import DAMPING, RATE
 from vehicle.studies.tables.point_names import OF_OTHER_AXLES, TEMPLATE_NAMES, point_of
 from vehicle.studies.tables.statements import Number, Statements
 from vehicle.studies.tables.table_file import file_statements
@@ -75,6 +76,7 @@ def car_table(
     for found in files:
         whole.numbers += found.numbers
         whole.curves += found.curves
+        whole.bushings += found.bushings
         result.left_out += found.left_out
         if found.tyre is not None:
             if result.tyre is not None:
@@ -94,6 +96,7 @@ def car_table(
     result.numbers, result.origins = numbers.stated, {**result.origins, **numbers.origins}
     result.parameters |= numbers.parameters
     _damper_curves(whole, result)
+    _bushings(whole, names, result)
     result.guessed += numbers.guessed
     result.left_out += numbers.left_out
     if not (result.numbers or result.points or result.curves or result.parameters):
@@ -205,6 +208,38 @@ def _has_spring(points: Mapping[str, Vector3]) -> bool:
     """True if the points of an axle place its spring and the arm that leads the wheel."""
     seats = "strut_top" in points or {"spring_lower", "spring_upper"} <= set(points)
     return seats and bool({"lower_ball", "pivot"} & set(points))
+
+
+BUSHINGS = {
+    "lower_arm_front": ("arm_front", "lower_front"),
+    "lower_arm_rear": ("arm_rear", "lower_rear"),
+    "upper_arm_front": ("upper_front",),
+    "upper_arm_rear": ("upper_rear",),
+    "strut_top": ("suspension_mount", "damper_mount"),
+    "trailing_pivot": ("pivot",),
+}
+"""Point -> names of its bushing in the templates."""
+
+
+def _bushings(found: Statements, names: Mapping[str, Collection[str]], result: CarTable) -> None:
+    """Enter stiffness and damping of bushings along the axes of the car, x, y and z."""
+    for row in found.bushings:
+        key, axle = point_of(row.name), row.name.axle
+        unit = unit_factor(row.unit)
+        if unit is None or unit.dimension not in (RATE, DAMPING):
+            raise DataError(f"{row.place}: bushing {row.name.text!r} with the unit {row.unit or 'nothing'!r}; "
+                            "write N/mm or N s/mm in the header, for example kx [N/mm]")  # fmt: skip
+        own = next((name for name in BUSHINGS.get(key or "", ()) if axle and f"bushings.{name}" in names[axle]), "")
+        if not own:
+            why = f"the {axle} axle of the template has no such bushing" if axle else "does not say which axle"
+            result.left_out.append((row.place, f"bushing {row.name.text!r}: {why}"))
+            continue
+        path = f"bushings.{own}.{'stiffness' if unit.dimension == RATE else 'damping'}"
+        if (axle, path) in result.parameters:
+            raise DataError(f"{row.place}: a second bushing {row.name.text!r} of the {axle} axle; remove one")
+        result.parameters[axle, path] = ([unit.factor * value for value in row.at], f"{row.name.text} ({row.place})")
+    if found.bushings:
+        result.guessed.append(("", "bushings: x, y and z of their table are those of the car"))
 
 
 def _damper_curves(found: Statements, result: CarTable) -> None:

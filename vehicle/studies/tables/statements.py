@@ -1,8 +1,8 @@
 """Statements of a table: each row as a point, a number, a curve or a remark, in the words and units of the file."""
 
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from vehicle.errors import DataError
@@ -52,6 +52,7 @@ class Statements:
     Attributes:
         file: name of the file.
         points, numbers, curves: its rows.
+        bushings: rows of stiffness or damping along x, y, z, with the unit.
         remarks: texts outside these rows, which may state units, axes and the origin.
         left_out: texts that are not understood, with their places.
         tyre: tyre of a `.tir` file; None in other files.
@@ -61,6 +62,7 @@ class Statements:
     points: list[Point] = field(default_factory=list)
     numbers: list[Number] = field(default_factory=list)
     curves: list[Curve] = field(default_factory=list)
+    bushings: list[Point] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     left_out: list[tuple[str, str]] = field(default_factory=list)
     tyre: TyreFile | None = None
@@ -79,6 +81,7 @@ COLUMNS = {
 
 KINDS = {word: kind for kind, words in COLUMNS.items() for word in words.split()}
 _COORDINATE = re.compile(r"(?:loc|pos|coord|coordinate)?[ _]*([xyz])(?:[ _]*(?:value|coordinate|coord|pos|loc))?", re.I)
+_BUSHING = re.compile(r"(k|c|d|stiffness|damping)[ _]*([xyz])", re.IGNORECASE)
 _UNIT_AT_END = re.compile(r"^(.*?)[\s_]*(?:\[([^\]]*)\]|\(([^)]*)\)|,\s*([^,\s]+)|[ _](mm|cm|inch|kg))$")
 _WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%°\"(/].*)")
 _AXLE_TITLE = re.compile(r"\b(front|rear) (axle|suspension|hardpoints)\b|\b(vorder|hinter)achse", re.IGNORECASE)
@@ -86,6 +89,11 @@ _OF_UNITS = re.compile(
     r"\bunits?\b|\beinheit|\[(mm|cm|m|in|inch)\]|\(mm\)|\bin mm\b|\bin millimet|\ball\b.*\bmm\b|\blength"
 )
 TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
+
+
+def _triples(columns: Mapping[str, int]) -> list[str]:
+    """Return the letters of the columns k, c, d, s that have x, y and z: stiffness or damping, by their units."""
+    return [letter for letter in "kcds" if {f"{letter}{axis}" for axis in "xyz"} <= set(columns)]
 
 
 def name_and_unit(cell: str) -> tuple[str, str]:
@@ -140,7 +148,7 @@ class _Reader:
         for row in self.table.rows:
             if row.sheet != sheet:
                 sheet, self.heads, self.unit = row.sheet, None, ""
-                self._title(row.sheet or self.stem)
+                self._title(row.sheet)
             cells = [cell for cell in row.cells if cell]
             if not cells:
                 self.heads = None
@@ -169,6 +177,14 @@ class _Reader:
         if not any(value is not None for value in values) and not any(map(_WITH_UNIT.fullmatch, row.cells)) \
                 and not any(map(TYRE_SIZE.fullmatch, row.cells)):  # fmt: skip
             return self._header(row)
+        if self.heads is not None and (triples := _triples(self.heads.columns)):
+            text = self._cell(row, "name")
+            for letter in triples:
+                at = [values[self.heads.columns[f"{letter}{axis}"]] for axis in "xyz"]
+                if None not in at and text:
+                    unit, name = self.heads.units[f"{letter}x"], self._name(row, text)
+                    self.found.bushings.append(Point(place=row.place, name=name, at=tuple(at), unit=unit))  # type: ignore[arg-type]
+            return True
         if self.heads is not None and "x" in self.heads.columns:
             return self._point_row(row, values)
         return self._plain_row(row, values)
@@ -189,6 +205,11 @@ class _Reader:
             text, unit = name_and_unit(cell)
             plain = words_of(text)
             coordinate = _COORDINATE.fullmatch(text)
+            if bushing := _BUSHING.fullmatch(text):
+                kind = f"{bushing[1][0].lower()}{bushing[2].lower()}"
+                columns.setdefault(kind, index)
+                units.setdefault(kind, unit)
+                continue
             kind = coordinate[1].lower() if coordinate else next((KINDS[word] for word in text.lower().split()
                                                                   if word in KINDS), "")  # fmt: skip
             if not kind and plain and plain[0] in ("velocity", "speed", "geschwindigkeit", "v"):
@@ -206,7 +227,13 @@ class _Reader:
             elif unit and index in axles:
                 units[f"axle{index}"] = unit
         points = {"x", "y", "z"} <= set(columns)
-        known = points or {"velocity", "force"} <= set(columns) or "value" in columns or len(axles) > 1
+        known = (
+            points
+            or bool(_triples(columns))
+            or {"velocity", "force"} <= set(columns)
+            or "value" in columns
+            or len(axles) > 1
+        )
         if not known:
             return False
         if "name" not in columns:
@@ -293,6 +320,10 @@ class _Reader:
         self.found.points.append(Point(place=place, name=name, at=at, unit=unit or self.unit))
 
     def _add_point(self, row: Row, name: NameWords, at: tuple[float, float, float], unit: str) -> None:
+        # The name of a file, "front.csv", holds for its points alone: a table of numbers is one of the car.
+        ends = {word for word in words_of(self.stem) if word in AXLES}
+        if not name.axle and len(ends) == 1:
+            name = replace(name, axle=ends.pop())
         self.found.points.append(Point(place=row.place, name=name, at=at, unit=unit))
 
     def _curve_row(self, row: Row, pair: tuple[float, float]) -> None:

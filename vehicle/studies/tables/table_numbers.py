@@ -116,7 +116,7 @@ def _si(row: Number, key: str, result: CarNumbers) -> float:
             unit = None
         if unit is None or unit.dimension != quantity.dimension:
             raise DataError(f"{row.place}: {row.name.text!r} has the unit {row.unit!r}, but {key_words(key, '')} needs "
-                            f"one such as {' or '.join(GUESSED[quantity.dimension])}; correct name or unit")  # fmt: skip
+                            f"one such as {' or '.join(GUESSED[quantity.dimension])}; correct one of both")  # fmt: skip
         return row.value * unit.factor
     if key == "front_share" and row.value > 1.0:
         return 0.01 * row.value
