@@ -25,7 +25,7 @@ WINGS = {
     "drawing": ("rendering", "notebook"),
     "runs": ("car", "figures", "comparison", "output", "targets", "report"),
     "handover": ("fmu", "page", "bench"),
-    "studies": ("design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
+    "studies": ("tables", "design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
 }
 """Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
@@ -59,7 +59,7 @@ ROOMS: dict[str, set[str]] = {
     "parameters": {"core", "formats"},
     "laws": {"core", "formats", "parameters"},
     "flexbody": {"analysis", "formats", "parameters", "replacement"},
-    "shapes": set(),
+    **{"shapes": set(), "tables": {"formats"}},
     "assembly": {"flexbody", "laws", "parameters", "shapes"},
     "simulation": {"assembly", "core", "excitation", "flexbody", "laws", "machine", "parameters"},
     "kinematics": {"assembly", "flexbody", "laws", "parameters", "simulation"},
@@ -82,7 +82,7 @@ ROOMS: dict[str, set[str]] = {
     | {"records", "reduced", "rendering", "report", "simulation", "targets"},
     "bench": {"analysis", "car", "excitation", "figures", "formats", "linear", "output", "page"}
     | {"parameters", "reduced", "rendering", "report", "shapes", "threads"},
-    "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
+    "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "tables", "threads"},
     "mounts": {"formats", "parameters"},
     "dampers": {"core", "formats", "parameters", "records", "rendering", "report", "threads"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
@@ -95,7 +95,7 @@ ROOMS: dict[str, set[str]] = {
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
     | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
-    | {"threads", "tuning", "version"},
+    | {"tables", "threads", "tuning", "version"},
     "__init__": {"car", "comparison", "dampers", "excitation", "figures", "fmu", "formats", "handed_down"}
     | {"laws", "mounts", "optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},

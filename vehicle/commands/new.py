@@ -176,23 +176,23 @@ def _job(settings: NewSettings, console: Console) -> None:
         folder = named(settings.destination.held, settings.folder, force=force, protect=(source,))
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
-    given, template = None, template_car(source)
+    of_file, template = None, template_car(source)
     if settings.table:
-        given = car_table(settings.table, template.point_names, {name: axle_type_names(name) for name in AXLE_TYPES})
-        template = with_axles(template, given.axles)
-        stated = stated_numbers(settings.numbers, settings.stated, given.numbers)
-    result = new_car(name, from_car, stated, given)
+        of_file = car_table(settings.table, template.point_names, {name: axle_type_names(name) for name in AXLE_TYPES})
+        template = with_axles(template, of_file.axles)
+        stated = stated_numbers(settings.numbers, settings.stated, of_file.numbers)
+    result = new_car(name, from_car, stated, of_file)
     with output_folder(folder, force=force) as temporary:
         write_text(temporary / "vehicle.toml", result.text)
         write_files(temporary, {file.name: file.read_bytes() for file in template_files(source, result.car)})
-        if given is not None:
-            write_text(temporary / "table.csv", "\n".join(table_lines(result, template, given)) + "\n")
-            if given.points:
-                plot_table(temporary / "points.svg", result, template, given)
+        if of_file is not None:
+            write_text(temporary / "table.csv", "\n".join(table_lines(result, template, of_file)) + "\n")
+            if of_file.points:
+                plot_table(temporary / "points.svg", result, template, of_file)
     file = folder / "vehicle.toml"
     figures = motion_figures(result.car)
-    read = {} if given is None else {"table": table_json(given)}
-    lines = [] if given is None else table_report(result, template, given)
+    read = {} if of_file is None else {"table": table_json(of_file)}
+    lines = [] if of_file is None else table_report(result, template, of_file)
     console.result({**_checks(result, file, figures), **read}, "\n".join([*lines, _report(result, file, figures)]))
 
 

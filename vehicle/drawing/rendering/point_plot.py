@@ -23,17 +23,17 @@ def plot_points(path: Path, axles: Mapping[str, tuple[Points, Points, Points]], 
     """
     with saved_figure(path, (12.0, 4.6 * len(axles) + 0.6), title, caption) as figure:
         rows = figure.subplots(len(axles), 3, squeeze=False)
-        for (axle, (given, kept, template)), row in zip(axles.items(), rows, strict=True):
+        for (axle, (of_table, kept, template)), row in zip(axles.items(), rows, strict=True):
             for (view, right, up), axis in zip(VIEWS, row, strict=True):
                 for points, style in (
                     (template, {"marker": "x", "color": "#9a9a9a", "label": "template"}),
                     (kept, {"marker": "o", "color": COLOURS[3], "label": "car, from the template"}),
-                    (given, {"marker": "o", "color": COLOURS[0], "label": "car, from the table"}),
+                    (of_table, {"marker": "o", "color": COLOURS[0], "label": "car, from the table"}),
                 ):
                     across = [1e3 * point[right] for point in points.values()]
                     upward = [1e3 * point[up] for point in points.values()]
                     axis.scatter(across, upward, s=26, zorder=3, **style)
-                for name, point in {**kept, **given}.items():
+                for name, point in {**kept, **of_table}.items():
                     if name in template:
                         ends = [[1e3 * place[index] for place in (template[name], point)] for index in (right, up)]
                         axis.plot(*ends, color="#9a9a9a", linewidth=0.6)

@@ -22,18 +22,22 @@ def put_points(table: dict[str, Any], template: TemplateCar, points: CarTable) -
     out stays at its share of the line through the strut.
     """
     sources = Sources()
-    for word, given in points.points.items():
+    for word, points_of_axle in points.points.items():
         axle = template.axle(word)
         old = template.table[axle]["hardpoints"]
         new = table[axle]["hardpoints"]
         center = new[_name(template, word, "center")]
-        for name, at in given.items():
-            place = [center[0] + at[0], at[1], center[2] + at[2]]
+        for name, (x, y, z) in points_of_axle.items():
+            at = [center[0] + x, y, center[2] + z]
             if name == _name(template, word, "patch"):
-                place[2] = new[name][2]
-            _enter(table, sources, f"{axle}.hardpoints.{name}", place, f"given: {points.origin(word, name)}")
+                at[2] = new[name][2]
+            _enter(table, sources, f"{axle}.hardpoints.{name}", at, f"given: {points.origin(word, name)}")
         strut = ("damper_bottom", "strut_top", "spring_lower")
-        if set(strut) <= set(old) and {"strut_top", "damper_bottom"} & set(given) and "spring_lower" not in given:
+        if (
+            set(strut) <= set(old)
+            and {"strut_top", "damper_bottom"} & set(points_of_axle)
+            and "spring_lower" not in points_of_axle
+        ):
             bottom, top, seat = (np.array(old[name], dtype=float) for name in strut)
             share = float((seat - bottom) @ (top - bottom) / ((top - bottom) @ (top - bottom)))
             new = table[axle]["hardpoints"]

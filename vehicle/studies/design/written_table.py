@@ -14,29 +14,29 @@ POINT_HEAD = ("name", "axle", "x [m]", "y [m]", "z [m]")
 AXES = "# axes: x rearward, y right, z up; origin of the vehicle file; right side"
 
 
-def table_lines(result: "NewCar", template: TemplateCar, given: CarTable) -> Iterable[str]:
-    """Yield the lines of the table of a new car: the numbers and the points that its table has given.
+def table_lines(result: "NewCar", template: TemplateCar, source: CarTable) -> Iterable[str]:
+    """Yield the lines of the table of a new car: the numbers and the points that its table has source.
 
     Args:
         result: the new car.
         template: its template.
-        given: the table that it was made from.
+        source: the table that it was made from.
     """
     yield AXES
     yield ",".join(HEAD)
     for check in result.checks:
-        if check.name in given.numbers:
+        if check.name in source.numbers:
             # "axle": an unsprung mass without it may be that of a wheel.
             name = check.name.replace("unsprung_mass", "unsprung_mass_axle")
             yield f"{name},,{check.value:.9g},{check.unit}"
     yield ""
     yield ",".join(POINT_HEAD)
-    for word, points in given.points.items():
+    for word, points in source.points.items():
         placed = car_points(result, template, word)
         center = template.wheels[word][0].paths[0].rpartition(".")[2]
         for name in dict.fromkeys((center, *points)):
             yield ",".join((name, word, *(f"{value:.6f}" for value in placed[name])))
-    for word, rows in given.curves.items():
+    for word, rows in source.curves.items():
         yield from ("", f"damper {word}", "velocity [m/s],force [N]", *(f"{v:.9g},{f:.9g}" for v, f in rows))
 
 

@@ -58,46 +58,46 @@ def read_adams_model(path: Path) -> Statements:
     """
     lines = read_text(path).lines
     model = _Model()
-    for place, name, text in _statements(path, lines):
+    for where, name, text in _statements(path, lines):
         if match := _DECK.match(text):
-            _deck(model, place, name, match[1].upper(), match[2], dict(_pairs(match[3])))
+            _deck(model, where, name, match[1].upper(), match[2], dict(_pairs(match[3])))
         elif match := _COMMAND.match(text):
-            _command(model, place, (match[1] or "units").lower(), dict(_pairs(" " + (match[2] or match[3]))))
-    found = Statements(file=path.name)
+            _command(model, where, (match[1] or "units").lower(), dict(_pairs(" " + (match[2] or match[3]))))
+    content = Statements(file=path.name)
     names = [name for _, name, _, _ in model.points] + [part.name for part in model.parts.values()]
     letters = right_letters(names)
     seen: dict[str, Vector] = {}
-    for place, name, part, at in model.points:
-        words = name_words(name.replace(".", " "), right_letter=letters.get(name, ""), place=place)
-        if point_of(words) is None:
+    for where, name, part, at in model.points:
+        terms = name_words(name.replace(".", " "), right_letter=letters.get(name, ""), where=where)
+        if point_of(terms) is None:
             continue
         frame = model.parts.get(part)
         ground = at if frame is None else frame.position + frame.turn @ at
-        key = f"{point_of(words)} {words.axle} {words.side}"
+        key = f"{point_of(terms)} {terms.axle} {terms.side}"
         if key in seen and np.allclose(seen[key], ground, atol=1e-6 * (1.0 + np.abs(ground).max())):
             continue
         seen[key] = ground
-        found.points.append(Point(place=place, name=words, at=(ground[0], ground[1], ground[2]), unit=model.length))
+        content.points.append(Point(where=where, name=terms, at=(ground[0], ground[1], ground[2]), unit=model.length))
     for body in model.parts.values():
         if body.mass:
-            words = name_words(f"{body.name.replace('.', ' ')} mass", right_letter=letters.get(body.name, ""))
-            found.numbers.append(Number(place=str(path), name=words, value=body.mass, unit=model.mass or "kg"))
-    if not (found.points or found.numbers):
-        raise DataError(f"{path}: has no point or part with a known name; export the hardpoints as a table (CSV)")
+            terms = name_words(f"{body.name.replace('.', ' ')} mass", right_letter=letters.get(body.name, ""))
+            content.numbers.append(Number(where=str(path), name=terms, value=body.mass, unit=model.mass or "kg"))
+    if not (content.points or content.numbers):
+        raise DataError(f"{path}: has no point or part with a listed name; export the hardpoints as a table (CSV)")
     if not model.length:
         raise DataError(f"{path}: does not state its unit of length (UNITS or defaults units); add it")
-    return found
+    return content
 
 
 def _statements(path: Path, lines: Sequence[str]):  # type: ignore[no-untyped-def]
     """Yield place, name of the comment above, and whole text of each statement, with its continued lines."""
-    name, text, place, continued = "", "", "", False
+    name, text, where, continued = "", "", "", False
     for number, raw in enumerate(lines, 1):
         line = raw.strip()
         if line.startswith("!"):
             if match := _NAME.search(line):
                 if text:
-                    yield place, name, text
+                    yield where, name, text
                     text = ""
                 name = match[1]
             continue
@@ -105,12 +105,12 @@ def _statements(path: Path, lines: Sequence[str]):  # type: ignore[no-untyped-de
             text += " " + line.rstrip("&")
         else:
             if text:
-                yield place, name, text
+                yield where, name, text
                 name = "" if not line else name
-            text, place = line.rstrip("&"), f"{path}:{number}"
+            text, where = line.rstrip("&"), f"{path}:{number}"
         continued = line.endswith("&")
     if text:
-        yield place, name, text
+        yield where, name, text
 
 
 def _pairs(text: str) -> list[tuple[str, str]]:
@@ -144,24 +144,24 @@ def _turn(angles: Vector) -> Vector:
     return np.asarray(about(2, angles[0]) @ about(0, angles[1]) @ about(2, angles[2]))
 
 
-def _deck(model: _Model, place: str, name: str, kind: str, number: str, values: dict[str, str]) -> None:
-    if kind == "UNITS":
+def _deck(model: _Model, where: str, name: str, sort: str, number: str, values: dict[str, str]) -> None:
+    if sort == "UNITS":
         model.length, model.mass = _unit(values.get("length", "")), _unit(values.get("mass", ""))
-    elif kind == "PART":
+    elif sort == "PART":
         mass = _numbers(values.get("mass"))[0]
         model.parts[number] = _Part(name or f"part {number}", _numbers(values.get("qg")),
                                     _turn(_numbers(values.get("reuler"))), mass)  # fmt: skip
-    elif kind == "MARKER" and name:
-        model.points.append((place, name, values.get("part", ""), _numbers(values.get("qp"))))
+    elif sort == "MARKER" and name:
+        model.points.append((where, name, values.get("part", ""), _numbers(values.get("qp"))))
 
 
-def _command(model: _Model, place: str, kind: str, values: dict[str, str]) -> None:
-    if kind == "units":
+def _command(model: _Model, where: str, sort: str, values: dict[str, str]) -> None:
+    if sort == "units":
         model.length = _unit(values.get("length", model.length))
         model.mass = _unit(values.get("mass", model.mass)) or model.mass
         return
-    name = values.get(f"{kind}_name", values.get("name", ""))
-    if kind == "part":
+    name = values.get(f"{sort}_name", values.get("name", ""))
+    if sort == "part":
         part = model.parts.setdefault(name, _Part(name.rpartition(".")[2], np.zeros(3), np.eye(3)))
         if "location" in values:
             part.position = _numbers(values["location"])
@@ -172,7 +172,7 @@ def _command(model: _Model, place: str, kind: str, values: dict[str, str]) -> No
             part.mass = float(_numbers(values["mass"])[0])
     elif "location" in values:
         owner, _, own = name.rpartition(".")
-        model.points.append((place, own, owner, _numbers(values["location"])))
+        model.points.append((where, own, owner, _numbers(values["location"])))
 
 
 def _unit(text: str) -> str:

@@ -55,27 +55,27 @@ def stated_axes(remarks: Sequence[str], file: str) -> dict[str, str]:
     Raises:
         DataError: two remarks contradict each other.
     """
-    found: dict[str, str] = {}
+    content: dict[str, str] = {}
 
     def enter(axis: str, direction: str) -> None:
-        if found.setdefault(axis, direction) != direction:
-            raise DataError(f"{file}: states {axis} {found[axis]} and {axis} {direction}; correct one of both")
+        if content.setdefault(axis, direction) != direction:
+            raise DataError(f"{file}: states {axis} {content[axis]} and {axis} {direction}; correct one of both")
 
     for remark in remarks:
         text = remark.lower()
         for axis, directions_of in _WORDS.items():
             for match in re.finditer(rf"(?<![a-z])\+?{axis}\+?(?:[- ]axis)?(?: is| points|:|=|,)?(?: positive)?"
                                      rf"(?: to(?:wards)?)?(?: the)?[ ,]+(?:driver's )?([a-zäöü]+)", text):  # fmt: skip
-                for direction, words in directions_of.items():
-                    if match[1] in words.split():
+                for direction, terms in directions_of.items():
+                    if match[1] in terms.split():
                         enter(axis, direction)
-    for remark in () if found else remarks:
+    for remark in () if content else remarks:
         # "SAE 2007-01-0818" is a paper.
         for match in re.finditer(r"\b(iso|sae|adams)\b(?:/car)?[ -]*(?P<number>[j\d][\d-]*)?", remark.lower()):
             if match["number"] in FRAME_NUMBERS and (match["number"] or _OF_AXES.search(remark.lower())):
                 for axis, direction in zip("xyz", FRAMES[match[1]], strict=True):
                     enter(axis, direction)
-    return found
+    return content
 
 
 def seen_axes(axles: Mapping[str, Mapping[str, Vector3]], sides: Mapping[str, str], file: str) -> dict[str, str]:
@@ -109,11 +109,11 @@ def seen_axes(axles: Mapping[str, Mapping[str, Vector3]], sides: Mapping[str, st
         if sides.get(axle) in ("left", "right") and outer:
             positive = sides[axle] if outer > 0.0 else {"left": "right", "right": "left"}[sides[axle]]
             votes["y"].setdefault(positive, f"the points of the {sides[axle]} side of the {axle} axle")
-    for axis, words in votes.items():
-        if len(words) > 1:
-            both = " but ".join(f"{why} show {axis} {word}" for word, why in words.items())
+    for axis, terms in votes.items():
+        if len(terms) > 1:
+            both = " but ".join(f"{why} show {axis} {word}" for word, why in terms.items())
             raise DataError(f"{file}: {both}; correct the names or the coordinates of these points")
-    return {axis: word for axis, words in votes.items() for word in words}
+    return {axis: word for axis, terms in votes.items() for word in terms}
 
 
 SEPARATE = 0.5
@@ -140,17 +140,17 @@ def axes_of(stated: Mapping[str, str], seen: Mapping[str, str], file: str) -> Ax
         if axis in stated and axis in seen and stated[axis] != seen[axis]:
             raise DataError(f"{file}: states {axis} {stated[axis]}, but its points show {axis} {seen[axis]}; correct "
                             "the remark or the points")  # fmt: skip
-    found = {**seen, **stated}
-    for axis, words in (("x", "x forward or x rearward"), ("z", "z up or z down")):
-        if axis not in found:
+    content = {**seen, **stated}
+    for axis, terms in (("x", "x forward or x rearward"), ("z", "z up or z down")):
+        if axis not in content:
             raise DataError(f"{file}: does not tell the direction of {axis}; add a row such as \"axes: x forward, y "
-                            f"left, z up\" ({words})")  # fmt: skip
-    right_handed = "right" if SIGNS[found["x"]] * SIGNS[found["z"]] > 0.0 else "left"
-    if found.get("y", right_handed) != right_handed:
+                            f"left, z up\" ({terms})")  # fmt: skip
+    right_handed = "right" if SIGNS[content["x"]] * SIGNS[content["z"]] > 0.0 else "left"
+    if content.get("y", right_handed) != right_handed:
         raise DataError(
-            f"{file}: axes x {found['x']}, y {found['y']}, z {found['z']} are left-handed; turn the sign of one "
+            f"{file}: axes x {content['x']}, y {content['y']}, z {content['z']} are left-handed; turn the sign of one "
             "coordinate, or correct the names of the sides"
         )
-    known = {"stated": [axis for axis in "xyz" if axis in stated], "seen": [axis for axis in "xyz" if axis in found]}
-    origin = "stated" if len(known["stated"]) >= 2 else "seen from the points"
-    return Axes(x=found["x"], y=right_handed, z=found["z"], origin=origin)
+    listed = {"stated": [axis for axis in "xyz" if axis in stated], "seen": [axis for axis in "xyz" if axis in content]}
+    origin = "stated" if len(listed["stated"]) >= 2 else "seen from the points"
+    return Axes(x=content["x"], y=right_handed, z=content["z"], origin=origin)

@@ -42,7 +42,7 @@ class _Numbers:
 
     def guess(self, key: str, axle: str, text: str) -> None:
         row = self.values.get((key, axle)) or self.values.get((key, ""))
-        self.result.guessed.append((row.place if row else "", text))
+        self.result.guessed.append((row.where if row else "", text))
 
 
 def car_numbers(
@@ -67,7 +67,7 @@ def car_numbers(
         _rates(table, axle, at_spring=spring_points.get(axle, False))
     for row, entry in values.items():
         if row not in table.used:
-            result.left_out.append((entry.place, f"{entry.text}: what it needs is not stated"))
+            result.left_out.append((entry.where, f"{entry.text}: what it needs is not stated"))
 
 
 def _lengths(table: _Numbers, points: Mapping[str, Any]) -> None:

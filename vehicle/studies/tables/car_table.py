@@ -71,28 +71,28 @@ def car_table(
         DataError: the content contradicts itself, or cannot be understood.
     """
     files = [file_statements(path) for path in paths]
-    whole = Statements(file=", ".join(found.file for found in files))
+    whole = Statements(file=", ".join(content.file for content in files))
     result, numbers = CarTable(file=whole.file), CarNumbers()
-    for found in files:
-        whole.numbers += found.numbers
-        whole.curves += found.curves
-        whole.bushings += found.bushings
-        result.left_out += found.left_out
-        if found.tyre is not None:
+    for content in files:
+        whole.numbers += content.numbers
+        whole.curves += content.curves
+        whole.bushings += content.bushings
+        result.left_out += content.left_out
+        if content.tyre is not None:
             if result.tyre is not None:
-                raise DataError(f"{found.file}: a second tyre file; give one, both axles have the same tyre")
-            result.tyre = found.tyre
+                raise DataError(f"{content.file}: a second tyre file; give one, both axles have the same tyre")
+            result.tyre = content.tyre
     names = _with_types(files, names, types or {}, result)
     whole.numbers = _without_parts(whole.numbers, names, result)
     values = read_numbers(whole, numbers)
     radius, track = ({axle: entry.value * factor for axle in AXLES
                       if (entry := values.get((key, axle)) or values.get((key, ""))) is not None}
                      for key, factor in (("tyre_radius", 1.0), ("track", 0.5)))  # fmt: skip
-    given: dict[str, Any] = {}
-    for found in files:
-        _place(found, radius, track, names, given, result)
+    lengths_given: dict[str, Any] = {}
+    for content in files:
+        _place(content, radius, track, names, lengths_given, result)
     at_spring = {axle: _has_spring(points) for axle, points in result.points.items()}
-    car_numbers(values, numbers, given, at_spring)
+    car_numbers(values, numbers, lengths_given, at_spring)
     result.numbers, result.origins = numbers.stated, {**result.origins, **numbers.origins}
     result.parameters |= numbers.parameters
     _damper_curves(whole, result)
@@ -114,7 +114,7 @@ def _with_types(files: Sequence[Statements], names: Mapping[str, Collection[str]
                 types: Mapping[str, Collection[str]], result: CarTable) -> dict[str, Collection[str]]:  # fmt: skip
     """Return the names of hardpoints and parts by axle, of another type where the points of a file need it."""
     changed = dict(names)
-    rows = [point for found in files for point in found.points]
+    rows = [point for content in files for point in content.points]
     only = {point.name.axle for point in rows} == {""}
     for axle in AXLES:
         keys = {point_of(point.name) for point in rows if point.name.axle == axle or (only and axle == "front")}
@@ -126,19 +126,19 @@ def _with_types(files: Sequence[Statements], names: Mapping[str, Collection[str]
     return changed
 
 
-def _place(found: Statements, radius: Mapping[str, float], track: Mapping[str, float],
-           names: Mapping[str, Collection[str]], given: dict[str, Any], result: CarTable) -> None:  # fmt: skip
+def _place(content: Statements, radius: Mapping[str, float], track: Mapping[str, float],
+           names: Mapping[str, Collection[str]], lengths_given: dict[str, Any], result: CarTable) -> None:  # fmt: skip
     """Enter the points of a file, and the lengths and the centre of gravity that they give."""
-    placed = placed_points(found, radius, track)
+    placed = placed_points(content, radius, track)
     lengths: dict[str, Any] = {"cog": placed.cog, "wheelbase": placed.wheelbase}
     for axle, points in placed.axles.items():
         if axle in result.points:
-            raise DataError(f"{found.file}: has points of the {axle} axle, as has another file; give each axle once")
+            raise DataError(f"{content.file}: has points of the {axle} axle, as has another file; give each axle once")
         lengths[f"track_{axle}"] = 2.0 * points.half_track
         if points.radius is not None and lengths.get("tyre_radius") is None:
             lengths["tyre_radius"] = points.radius
         _use_points(axle, placed, names[axle], result)
-    given |= {key: value for key, value in lengths.items() if value is not None}
+    lengths_given |= {key: value for key, value in lengths.items() if value is not None}
     result.guessed += placed.guessed
     result.left_out += placed.left_out
     if placed.axes is not None:
@@ -164,19 +164,19 @@ def _without_parts(rows: Sequence[Number], names: Mapping[str, Collection[str]],
     """Return the numbers that are no masses of parts; enter these, which need an axle."""
     others = []
     for row in rows:
-        words = " ".join(sorted(set(row.name.words) - {"mass", "gel", "ger"}, reverse="upper" in row.name.words))
-        words = {"arm lower": "lower arm", "tyre wheel": "wheel tyre"}.get(words, words)
+        terms = " ".join(sorted(set(row.name.terms) - {"mass", "gel", "ger"}, reverse="upper" in row.name.terms))
+        terms = {"arm lower": "lower arm", "tyre wheel": "wheel tyre"}.get(terms, terms)
         unit = unit_factor(row.unit or "kg")
-        if "mass" not in row.name.words or words not in PARTS or unit is None or not isinstance(row.value, float):
+        if "mass" not in row.name.terms or terms not in PARTS or unit is None or not isinstance(row.value, float):
             others.append(row)
             continue
         axle = row.name.axle
-        part = next((name for name in PARTS[words] if axle and f"parts.{name}" in names[axle]), "")
+        part = next((name for name in PARTS[terms] if axle and f"parts.{name}" in names[axle]), "")
         if part:
-            result.parameters[axle, f"parts.{part}.mass"] = (row.value * unit.factor, f"{row.name.text} ({row.place})")
+            result.parameters[axle, f"parts.{part}.mass"] = (row.value * unit.factor, f"{row.name.text} ({row.where})")
         else:
             why = f"the {axle} axle of the template has no such part" if axle else "does not say which axle"
-            result.left_out.append((row.place, f"{row.name.text!r} = {row.value:g}: {why}"))
+            result.left_out.append((row.where, f"{row.name.text!r} = {row.value:g}: {why}"))
     return others
 
 
@@ -191,12 +191,12 @@ def _use_points(axle: str, placed: PlacedPoints, names: Collection[str], result:
         own = {key: name if key in ("wheel_center", "tyre_patch") else "" for key, name in own.items()}
     used: dict[str, Vector3] = {}
     for key, name in own.items():
-        place, text = points.places[key]
+        where, text = points.rows_of_file[key]
         if name:
             used[name] = points.at[key]
             result.origins[axle, name] = text
         elif not other:
-            result.left_out.append((place, f"{text!r}: the {axle} axle of the template has no such point"))
+            result.left_out.append((where, f"{text!r}: the {axle} axle of the template has no such point"))
     if {"damper_upper", "damper_lower"} <= set(used) and axle in result.axles and "spring_lower" not in used:
         used |= {"spring_upper": used["damper_upper"], "spring_lower": used["damper_lower"]}
         result.origins |= {(axle, name): "around the damper" for name in ("spring_upper", "spring_lower")}
@@ -221,47 +221,47 @@ BUSHINGS = {
 """Point -> names of its bushing in the templates."""
 
 
-def _bushings(found: Statements, names: Mapping[str, Collection[str]], result: CarTable) -> None:
+def _bushings(content: Statements, names: Mapping[str, Collection[str]], result: CarTable) -> None:
     """Enter stiffness and damping of bushings along the axes of the car, x, y and z."""
-    for row in found.bushings:
+    for row in content.bushings:
         key, axle = point_of(row.name), row.name.axle
         unit = unit_factor(row.unit)
         if unit is None or unit.dimension not in (RATE, DAMPING):
-            raise DataError(f"{row.place}: bushing {row.name.text!r} with the unit {row.unit or 'nothing'!r}; "
+            raise DataError(f"{row.where}: bushing {row.name.text!r} with the unit {row.unit or 'nothing'!r}; "
                             "write N/mm or N s/mm in the header, for example kx [N/mm]")  # fmt: skip
         own = next((name for name in BUSHINGS.get(key or "", ()) if axle and f"bushings.{name}" in names[axle]), "")
         if not own:
             why = f"the {axle} axle of the template has no such bushing" if axle else "does not say which axle"
-            result.left_out.append((row.place, f"bushing {row.name.text!r}: {why}"))
+            result.left_out.append((row.where, f"bushing {row.name.text!r}: {why}"))
             continue
         path = f"bushings.{own}.{'stiffness' if unit.dimension == RATE else 'damping'}"
         if (axle, path) in result.parameters:
-            raise DataError(f"{row.place}: a second bushing {row.name.text!r} of the {axle} axle; remove one")
-        result.parameters[axle, path] = ([unit.factor * value for value in row.at], f"{row.name.text} ({row.place})")
-    if found.bushings:
+            raise DataError(f"{row.where}: a second bushing {row.name.text!r} of the {axle} axle; remove one")
+        result.parameters[axle, path] = ([unit.factor * value for value in row.at], f"{row.name.text} ({row.where})")
+    if content.bushings:
         result.guessed.append(("", "bushings: x, y and z of their table are those of the car"))
 
 
-def _damper_curves(found: Statements, result: CarTable) -> None:
+def _damper_curves(content: Statements, result: CarTable) -> None:
     """Enter the damper curves; forces of the other sign than the velocity are turned."""
-    for curve in found.curves:
+    for curve in content.curves:
         scale = []
         for unit, dimension, si in zip(curve.units, ((0, 1, -1, 0), (1, 1, -2, 0)), ("m/s", "N"), strict=True):
             factor = unit_factor(unit, dimension)
             if factor is None or factor.dimension != dimension:
-                raise DataError(f"{curve.place}: damper curve with the unit {unit or 'nothing'!r}; write {si} in its "
+                raise DataError(f"{curve.where}: damper curve with the unit {unit or 'nothing'!r}; write {si} in its "
                                 "header, for example force [N]")  # fmt: skip
             scale.append(factor.factor)
         if not curve.axle:
-            raise DataError(f"{curve.place}: damper curve of no axle; write a title above it: damper front")
+            raise DataError(f"{curve.where}: damper curve of no axle; write a title above it: damper front")
         if curve.axle in result.curves:
-            raise DataError(f"{curve.place}: a second damper curve of the {curve.axle} axle; remove one")
+            raise DataError(f"{curve.where}: a second damper curve of the {curve.axle} axle; remove one")
         rows = sorted((velocity * scale[0], force * scale[1]) for velocity, force in curve.rows)
         if all(velocity * force <= 0.0 for velocity, force in rows):
             rows = [(velocity, -force) for velocity, force in rows]
-            result.guessed.append((curve.place, "damper forces turned: they oppose the velocity"))
+            result.guessed.append((curve.where, "damper forces turned: they oppose the velocity"))
         result.curves[curve.axle] = rows
-        result.origins[curve.axle, "curve"] = curve.place
+        result.origins[curve.axle, "curve"] = curve.where
         for name in ("wheel_damping", "damper_constant", "damping_ratio"):
             if (value := result.numbers.pop(f"{name}_{curve.axle}", None)) is not None:
                 result.left_out.append(

@@ -22,7 +22,7 @@ _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 class Row:
     """Row of a table: its place for messages, "points.csv:7", the title of its sheet or "", and its cells."""
 
-    place: str
+    where: str
     sheet: str
     cells: tuple[str, ...]
 
@@ -46,7 +46,7 @@ class CellTable:
         if _THOUSANDS.fullmatch(text):
             if self.comma == "unknown":
                 raise DataError(
-                    f"{row.place}: {text!r} may be a thousand or a decimal number; write it with a decimal point"
+                    f"{row.where}: {text!r} may be a thousand or a decimal number; write it with a decimal point"
                 )
             if self.comma == "thousands":
                 return float(text.replace(",", ""))
@@ -66,7 +66,7 @@ def read_cells(path: Path) -> CellTable:
         raise ConfigurationError(f"{path}: is larger than {LARGEST_TABLE / 1e6:g} MB, so it is no table of a car")
     if path.suffix.lower() in (".xlsx", ".xlsm"):
         rows = [
-            Row(place=f"{path}: sheet {title!r}, row {number}", sheet=title, cells=cells)
+            Row(where=f"{path}: sheet {title!r}, row {number}", sheet=title, cells=cells)
             for title, sheet in sheet_texts(path).items()
             for number, cells in enumerate(sheet, 1)
         ]
@@ -84,7 +84,7 @@ def _text_rows(path: Path) -> list[Row]:
         sign = " "
     rows = []
     for number, line in enumerate(lines, 1):
-        place = f"{path}:{number}"
+        where = f"{path}:{number}"
         if line.lstrip().startswith(("#", "!", "%", "//")):
             # A remark may say units and axes, see `remarks`.
             cells = [line.strip()]
@@ -94,20 +94,20 @@ def _text_rows(path: Path) -> list[Row]:
             try:
                 cells = next(csv.reader([line], delimiter=sign), [])
             except csv.Error as error:
-                raise DataError(f"{place}: cannot be read ({error}); correct the line") from None
-        rows.append(Row(place=place, sheet="", cells=tuple(cell.strip() for cell in cells)))
+                raise DataError(f"{where}: cannot be read ({error}); correct the line") from None
+        rows.append(Row(where=where, sheet="", cells=tuple(cell.strip() for cell in cells)))
     return rows
 
 
 def _blank_cells(line: str) -> list[str]:
     """Return the cells of a line with blanks between them: words before the first number are one name."""
-    words = re.split(r"\s{2,}|\t", line.strip())
-    if len(words) > 1:
-        return [part for word in words for part in (word.split() if NUMBER.fullmatch(word.split(" ")[0]) else [word])]
-    words = line.split()
-    first = next((index for index, word in enumerate(words) if NUMBER.fullmatch(word)), len(words))
-    name = " ".join(words[:first]).rstrip("=:").strip()
-    return ([name] if name else []) + words[first:]
+    terms = re.split(r"\s{2,}|\t", line.strip())
+    if len(terms) > 1:
+        return [part for word in terms for part in (word.split() if NUMBER.fullmatch(word.split(" ")[0]) else [word])]
+    terms = line.split()
+    first = next((index for index, word in enumerate(terms) if NUMBER.fullmatch(word)), len(terms))
+    name = " ".join(terms[:first]).rstrip("=:").strip()
+    return ([name] if name else []) + terms[first:]
 
 
 def _comma(rows: list[Row]) -> str:

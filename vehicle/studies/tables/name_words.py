@@ -97,34 +97,34 @@ class NameWords:
     """
 
     text: str
-    words: tuple[str, ...]
+    terms: tuple[str, ...]
     axle: str
     side: str
 
-    def has(self, *words: str) -> bool:
+    def has(self, *terms: str) -> bool:
         """True if all of some words occur."""
-        return set(words) <= set(self.words)
+        return set(terms) <= set(self.terms)
 
 
 def words_of(text: str) -> list[str]:
     """Return the plain words of a name, in order."""
     plain = text.replace("CoG", "cog").replace("CoM", "com")
     pieces = [piece.lower() for piece in _PIECES.findall(plain)]
-    words: list[str] = []
+    terms: list[str] = []
     for piece in pieces:
-        words += PLAIN.get(piece, piece).split()
+        terms += PLAIN.get(piece, piece).split()
     for pair, one in _PAIRS:
         index = 0
-        while index < len(words) - 1:
+        while index < len(terms) - 1:
             # "center of mass" has a word between.
-            gap = 1 + (words[index + 1] in ("of", "the") and index + 2 < len(words))
-            if (words[index], words[index + gap]) == pair:
-                words[index : index + gap + 1] = [one]
+            gap = 1 + (terms[index + 1] in ("of", "the") and index + 2 < len(terms))
+            if (terms[index], terms[index + gap]) == pair:
+                terms[index : index + gap + 1] = [one]
             index += 1
-    return words
+    return terms
 
 
-def name_words(text: str, *, right_letter: str, place: str = "") -> NameWords:
+def name_words(text: str, *, right_letter: str, where: str = "") -> NameWords:
     """Split a name.
 
     Args:
@@ -136,7 +136,7 @@ def name_words(text: str, *, right_letter: str, place: str = "") -> NameWords:
         DataError: the name has two places along the car, and does not say which of both is its axle.
     """
     side = axle = ""
-    words: list[str] = []
+    terms: list[str] = []
     for word in words_of(text):
         if word in CORNERS:
             axle, side = CORNERS[word]
@@ -145,28 +145,28 @@ def name_words(text: str, *, right_letter: str, place: str = "") -> NameWords:
         elif word == "l" and right_letter == "right":
             side = "left"
         elif word in ("f", "r"):
-            words.append({"f": "front", "r": right_letter or "r"}[word])
+            terms.append({"f": "front", "r": right_letter or "r"}[word])
         elif word not in NOISE:
-            words.append(word)
-    if "right" in words:
+            terms.append(word)
+    if "right" in terms:
         side = "right"
-        words.remove("right")
-    ends = [index for index, word in enumerate(words) if word in AXLES]
+        terms.remove("right")
+    ends = [index for index, word in enumerate(terms) if word in AXLES]
     # "front axle": the axle, wherever it stands.
     for index in ends:
-        if words[index + 1 : index + 2] in (["axle"], ["suspension"]):
-            axle = words[index]
-            words[index : index + 2] = []
+        if terms[index + 1 : index + 2] in (["axle"], ["suspension"]):
+            axle = terms[index]
+            terms[index : index + 2] = []
             break
-    ends = [index for index, word in enumerate(words) if word in AXLES]
-    needs = "arm" in words and not {"outer", "ball", "upper_ball"} & set(words)
+    ends = [index for index, word in enumerate(terms) if word in AXLES]
+    needs = "arm" in terms and not {"outer", "ball", "upper_ball"} & set(terms)
     if len(ends) > 1 and not axle:
-        if ends[0] != 0 and len({words[index] for index in ends}) > 1:
-            raise DataError(f"{place}: {text!r} does not say which of its two places is the axle; begin with the axle")
-        axle = words.pop(ends[0])
+        if ends[0] != 0 and len({terms[index] for index in ends}) > 1:
+            raise DataError(f"{where}: {text!r} does not say which of its two places is the axle; begin with the axle")
+        axle = terms.pop(ends[0])
     elif len(ends) == 1 and not needs and not axle:
-        axle = words.pop(ends[0])
-    return NameWords(text=text, words=tuple(word for word in words if word not in ("axle", "suspension_")), axle=axle,
+        axle = terms.pop(ends[0])
+    return NameWords(text=text, terms=tuple(word for word in terms if word not in ("axle", "suspension_")), axle=axle,
                      side=side)  # fmt: skip
 
 
@@ -176,16 +176,16 @@ def right_letters(names: Sequence[str]) -> dict[str, str]:
     A name that ends with a single "l" is one of the left side, so "right" too: WC_L, but not L_TRACK.
     """
     pieces = {name: tuple(piece.lower() for piece in _PIECES.findall(name)) for name in names}
-    known = set(pieces.values())
+    listed = set(pieces.values())
 
     def swapped(parts: tuple[str, ...], letter: str) -> tuple[str, ...]:
         return tuple(letter if part in ("l", "r") else part for part in parts)
 
     return {
         name: "right"
-        if parts[-1:] == ("l",) or {swapped(parts, "l"), swapped(parts, "r")} <= known
+        if parts[-1:] == ("l",) or {swapped(parts, "l"), swapped(parts, "r")} <= listed
         else "rear"
-        if swapped(parts, "f") in known
+        if swapped(parts, "f") in listed
         else ""
         for name, parts in pieces.items()
         if "r" in parts or "l" in parts

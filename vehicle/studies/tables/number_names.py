@@ -35,7 +35,7 @@ class Quantity:
         of_axle: False for the whole car, True for an axle, None for both.
     """
 
-    words: tuple[str, ...]
+    terms: tuple[str, ...]
     optional: str
     dimension: Dimension
     sizes: tuple[float, float]
@@ -43,9 +43,9 @@ class Quantity:
 
 
 def _quantity(
-    words: str, dimension: Dimension, sizes: tuple[float, float], *, of_axle: bool | None = False, optional: str = ""
+    terms: str, dimension: Dimension, sizes: tuple[float, float], *, of_axle: bool | None = False, optional: str = ""
 ) -> Quantity:
-    return Quantity(words=tuple(words.split("|")), optional=optional, dimension=dimension, sizes=sizes, of_axle=of_axle)
+    return Quantity(terms=tuple(terms.split("|")), optional=optional, dimension=dimension, sizes=sizes, of_axle=of_axle)
 
 
 PER_WHEEL = ("wheel", "corner", "side", "each", "one", "quarter", "single")
@@ -146,12 +146,12 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
     if symbol in SYMBOLS and name.text != "l":
         key, axle = SYMBOLS[symbol]
         return key, "" if QUANTITIES[key].of_axle is False else axle or name.axle, True
-    words = set(name.words)
+    terms = set(name.terms)
     for key, quantity in QUANTITIES.items():
         if (quantity.of_axle is True and not name.axle) or (quantity.of_axle is False and name.axle):
             continue
-        for option in quantity.words:
+        for option in quantity.terms:
             required = set(option.split())
-            if required <= words <= required | set(quantity.optional.split()):
+            if required <= terms <= required | set(quantity.optional.split()):
                 return key, name.axle, False
     return None

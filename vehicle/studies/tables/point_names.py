@@ -47,51 +47,51 @@ def point_of(name: NameWords) -> str | None:
     for key, names in TEMPLATE_NAMES.items():
         if own in (key, *names):
             return key
-    words, has = set(name.words) - OF_BODY, name.has
-    lower, upper = bool(words & {"lower", "bottom"}), bool(words & {"upper", "top"})
-    outer = bool(words & {"outer", "ball", "knuckle"})
-    along = next((word for word in name.words if word in ("front", "rear")), "")
+    terms, has = set(name.terms) - OF_BODY, name.has
+    lower, upper = bool(terms & {"lower", "bottom"}), bool(terms & {"upper", "top"})
+    outer = bool(terms & {"outer", "ball", "knuckle"})
+    along = next((word for word in name.terms if word in ("front", "rear")), "")
     if has("cog"):
         return "cog"
-    if "contact" in words:
+    if "contact" in terms:
         return "tyre_patch"
-    if has("wheel", "center") or has("knuckle", "center") or words in ({"wheel"}, {"spindle", "center"}):
+    if has("wheel", "center") or has("knuckle", "center") or terms in ({"wheel"}, {"spindle", "center"}):
         return "wheel_center"
-    if "tie" in words:
-        inner = bool(words & {"inner", "rack"} or set(name.words) & OF_BODY)
-        return "tie_inner" if inner else "tie_outer" if outer or "end" in words else None
-    if words <= {"rack", "end", "inner"} and "rack" in words:
+    if "tie" in terms:
+        inner = bool(terms & {"inner", "rack"} or set(name.terms) & OF_BODY)
+        return "tie_inner" if inner else "tie_outer" if outer or "end" in terms else None
+    if terms <= {"rack", "end", "inner"} and "rack" in terms:
         return "tie_inner"
-    if words == {"top"}:
+    if terms == {"top"}:
         return "strut_top"
-    if words == {"ball"}:
+    if terms == {"ball"}:
         return "lower_ball"
-    if "droplink" in words:
-        at_bar = bool(words & {"bar", "end", "lower", "bottom"}) and not words & {"strut", "upper", "top", "outer"}
-        return "bar_end" if at_bar else "droplink_top" if words & {"strut", "upper", "top", "outer", "damper"} else None
-    if "bar" in words:
-        return "bar_end" if words & {"end", "outer", "droplink", "arm"} else "bar_mount"
-    if "trailing" in words or "twistbeam" in words:
-        return "trailing_pivot" if not outer and "beam" not in words else None
-    if "beam" in words:
+    if "droplink" in terms:
+        at_bar = bool(terms & {"bar", "end", "lower", "bottom"}) and not terms & {"strut", "upper", "top", "outer"}
+        return "bar_end" if at_bar else "droplink_top" if terms & {"strut", "upper", "top", "outer", "damper"} else None
+    if "bar" in terms:
+        return "bar_end" if terms & {"end", "outer", "droplink", "arm"} else "bar_mount"
+    if "trailing" in terms or "twistbeam" in terms:
+        return "trailing_pivot" if not outer and "beam" not in terms else None
+    if "beam" in terms:
         return "beam"
-    if "spring" in words:
+    if "spring" in terms:
         # The seat of a spring is that on the suspension.
         return (
-            "spring_upper" if upper and not lower else "spring_lower" if lower or words == {"spring", "seat"} else None
+            "spring_upper" if upper and not lower else "spring_lower" if lower or terms == {"spring", "seat"} else None
         )
-    if words & {"strut", "damper"}:
-        if words & {"lower", "bottom", "knuckle"} and not words & {"upper", "top"}:
+    if terms & {"strut", "damper"}:
+        if terms & {"lower", "bottom", "knuckle"} and not terms & {"upper", "top"}:
             return "strut_bottom"
-        return "strut_top" if upper or words in ({"strut"}, {"strut", "inner"}) else None
+        return "strut_top" if upper or terms in ({"strut"}, {"strut", "inner"}) else None
     if lower == upper:
         # An arm without "lower" is the only one of its axle.
-        if "arm" not in words or upper:
+        if "arm" not in terms or upper:
             return None
         lower = True
     level = "lower" if lower else "upper"
-    if "ball" in words or ("arm" in words and outer):
+    if "ball" in terms or ("arm" in terms and outer):
         return f"{level}_ball"
-    if "arm" in words and along:
+    if "arm" in terms and along:
         return f"{level}_arm_{along}"
     return None

@@ -55,7 +55,7 @@ def read_robot_model(path: Path) -> Statements:
         raise DataError(f"{path}: begins with <{root.tag}>, not with <robot>; give a URDF file")
     links = {link.get("name", ""): _link(path, link) for link in root.findall("link")}
     for joint in root.findall("joint"):
-        parent, child = (joint.find(kind) for kind in ("parent", "child"))
+        parent, child = (joint.find(sort) for sort in ("parent", "child"))
         if parent is None or child is None or child.get("link") not in links or parent.get("link") not in links:
             raise DataError(f"{path}: joint {joint.get('name')!r} has no parent or no child that is a link; correct it")
         link = links[child.get("link", "")]
@@ -65,7 +65,7 @@ def read_robot_model(path: Path) -> Statements:
 
 
 def _statements(path: Path, links: dict[str, _Link]) -> Statements:
-    places = {name: _place(path, links, name) for name in links}
+    rows_of_file = {name: _place(path, links, name) for name in links}
     wheels = [name for name, link in links.items() if "wheel" in name.lower() and link.mass > 0.0
               and not any(other.parent == name and "wheel" in other.name.lower()
                           for other in links.values())]  # fmt: skip
@@ -73,28 +73,28 @@ def _statements(path: Path, links: dict[str, _Link]) -> Statements:
         raise DataError(
             f"{path}: has {len(wheels)} links with a mass and 'wheel' in their names, must be 4; rename them"
         )
-    centers = {name: places[name][0] for name in wheels}
+    centers = {name: rows_of_file[name][0] for name in wheels}
     middle = np.mean([center[0] for center in centers.values()])
     axles = {"front": [name for name in wheels if centers[name][0] > middle],
              "rear": [name for name in wheels if centers[name][0] <= middle]}  # fmt: skip
     if [len(names) for names in axles.values()] != [2, 2]:
         raise DataError(f"{path}: wheels are not at two axles along x; URDF has x forward, y left, z up")
     mass = sum(link.mass for link in links.values())
-    cogs = {name: places[name][0] + places[name][1] @ link.cog for name, link in links.items()}
+    cogs = {name: rows_of_file[name][0] + rows_of_file[name][1] @ link.cog for name, link in links.items()}
     cog = np.sum([link.mass * cogs[name] for name, link in links.items()], axis=0) / mass
     inertia = np.zeros((3, 3))
     for name, link in links.items():
-        turn, arm = places[name][1], cogs[name] - cog
+        turn, arm = rows_of_file[name][1], cogs[name] - cog
         inertia += turn @ link.inertia @ turn.T + link.mass * ((arm @ arm) * np.eye(3) - np.outer(arm, arm))
-    found = Statements(file=path.name, remarks=[FRAME])
+    content = Statements(file=path.name, remarks=[FRAME])
 
-    def number(words: str, value: float, unit: str, axle: str = "") -> None:
-        name = NameWords(text=f"{words} {axle} axle" if axle else words, words=tuple(words.split()), axle=axle, side="")
-        found.numbers.append(Number(place=str(path), name=name, value=round(value, 9), unit=unit))
+    def number(terms: str, value: float, unit: str, axle: str = "") -> None:
+        name = NameWords(text=f"{terms} {axle} axle" if axle else terms, terms=tuple(terms.split()), axle=axle, side="")
+        content.numbers.append(Number(where=str(path), name=name, value=round(value, 9), unit=unit))
 
     number("kerb mass", mass, "kg")
-    for index, words in enumerate(("roll inertia", "pitch inertia", "yaw inertia")):
-        number(words, inertia[index, index], "kg m2")
+    for index, terms in enumerate(("roll inertia", "pitch inertia", "yaw inertia")):
+        number(terms, inertia[index, index], "kg m2")
     for axle, names in axles.items():
         number("unsprung mass", sum(_unsprung(links, name, wheels) for name in names), "kg", axle)
         radius = max(links[name].radius for name in names)
@@ -102,12 +102,12 @@ def _statements(path: Path, links: dict[str, _Link]) -> Statements:
             number("tyre radius loaded", radius, "m", axle)
         for name in names:
             side = "left" if centers[name][1] > 0.0 else "right"
-            named = NameWords(text=name, words=("wheel", "center"), axle=axle, side=side)
+            named = NameWords(text=name, terms=("wheel", "center"), axle=axle, side=side)
             at = centers[name]
-            found.points.append(Point(place=str(path), name=named, at=(at[0], at[1], at[2]), unit="m"))
-    whole = NameWords(text="centre of gravity of all links", words=("cog",), axle="front", side="")
-    found.points.append(Point(place=str(path), name=whole, at=(cog[0], cog[1], cog[2]), unit="m"))
-    return found
+            content.points.append(Point(where=str(path), name=named, at=(at[0], at[1], at[2]), unit="m"))
+    whole = NameWords(text="centre of gravity of all links", terms=("cog",), axle="front", side="")
+    content.points.append(Point(where=str(path), name=whole, at=(cog[0], cog[1], cog[2]), unit="m"))
+    return content
 
 
 def _unsprung(links: dict[str, _Link], wheel: str, wheels: list[str]) -> float:

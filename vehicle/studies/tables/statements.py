@@ -19,7 +19,7 @@ from vehicle.studies.tables.unit_factor import LENGTH, unit_factor
 class Point:
     """Row of a point: its words, coordinates in the unit of the file, and the unit, "" if none is stated."""
 
-    place: str
+    where: str
     name: NameWords
     at: tuple[float, float, float]
     unit: str
@@ -29,7 +29,7 @@ class Point:
 class Number:
     """Row of a number: its words, value (a text for the size of a tyre) and unit."""
 
-    place: str
+    where: str
     name: NameWords
     value: float | str
     unit: str
@@ -39,7 +39,7 @@ class Number:
 class Curve:
     """Block of two columns, as of a damper: axle ("" if none is stated), velocities and forces with their units."""
 
-    place: str
+    where: str
     axle: str
     rows: tuple[tuple[float, float], ...]
     units: tuple[str, str]
@@ -79,7 +79,7 @@ COLUMNS = {
 }  # fmt: skip
 """Kind of a column -> words of its header."""
 
-KINDS = {word: kind for kind, words in COLUMNS.items() for word in words.split()}
+KINDS = {word: sort for sort, terms in COLUMNS.items() for word in terms.split()}
 _COORDINATE = re.compile(r"(?:loc|pos|coord|coordinate)?[ _]*([xyz])(?:[ _]*(?:value|coordinate|coord|pos|loc))?", re.I)
 _BUSHING = re.compile(r"(k|c|d|stiffness|damping)[ _]*([xyz])", re.IGNORECASE)
 _UNIT_AT_END = re.compile(r"^(.*?)[\s_]*(?:\[([^\]]*)\]|\(([^)]*)\)|,\s*([^,\s]+)|[ _](mm|cm|inch|kg))$")
@@ -124,16 +124,16 @@ def statements(path: Path) -> Statements:
         DataError: it is no table, or a name or a number is ambiguous.
     """
     table = read_cells(path)
-    found = Statements(file=path.name)
+    content = Statements(file=path.name)
     names = [row.cells[0] for row in table.rows if row.cells]
-    _Reader(table=table, found=found, letters=right_letters(names), stem=path.stem).read()
-    return found
+    _Reader(table=table, content=content, letters=right_letters(names), stem=path.stem).read()
+    return content
 
 
 @dataclass(slots=True)
 class _Reader:
     table: CellTable
-    found: Statements
+    content: Statements
     letters: dict[str, str]
     stem: str
     heads: _Heads | None = None
@@ -156,10 +156,10 @@ class _Reader:
                 self._remark(" ".join(cells), title=False)
             elif not self._row(row):
                 text = " ".join(cells)
-                told = bool(_length_unit(text) or "origin" in text.lower() or stated_axes([text], row.place))
-                if len(cells) > 1 and any(map(str.isdigit, " ".join(cells[1:]))) and not told:
-                    self.found.left_out.append((row.place, f"{', '.join(cells)[:60]!r}: not understood"))
-                self._remark(text, title=not told)
+                is_remark = bool(_length_unit(text) or "origin" in text.lower() or stated_axes([text], row.where))
+                if len(cells) > 1 and any(map(str.isdigit, " ".join(cells[1:]))) and not is_remark:
+                    self.content.left_out.append((row.where, f"{', '.join(cells)[:60]!r}: not understood"))
+                self._remark(text, title=not is_remark)
         for (_, axle, side), parts in self.coordinates.items():
             self._joined(parts, axle, side)
 
@@ -183,7 +183,7 @@ class _Reader:
                 at = [values[self.heads.columns[f"{letter}{axis}"]] for axis in "xyz"]
                 if None not in at and text:
                     unit, name = self.heads.units[f"{letter}x"], self._name(row, text)
-                    self.found.bushings.append(Point(place=row.place, name=name, at=tuple(at), unit=unit))  # type: ignore[arg-type]
+                    self.content.bushings.append(Point(where=row.where, name=name, at=tuple(at), unit=unit))  # type: ignore[arg-type]
             return True
         if self.heads is not None and "x" in self.heads.columns:
             return self._point_row(row, values)
@@ -194,7 +194,7 @@ class _Reader:
         extra = 0 if self.heads is None else len(row.cells) - self.heads.width
         if extra <= 0 or self.heads is None or self.heads.columns["name"] != 0:
             return row
-        return Row(place=row.place, sheet=row.sheet, cells=(", ".join(row.cells[: extra + 1]), *row.cells[extra + 1 :]))
+        return Row(where=row.where, sheet=row.sheet, cells=(", ".join(row.cells[: extra + 1]), *row.cells[extra + 1 :]))
 
     def _header(self, row: Row) -> bool:
         columns: dict[str, int] = {}
@@ -206,35 +206,35 @@ class _Reader:
             plain = words_of(text)
             coordinate = _COORDINATE.fullmatch(text)
             if bushing := _BUSHING.fullmatch(text):
-                kind = f"{bushing[1][0].lower()}{bushing[2].lower()}"
-                columns.setdefault(kind, index)
-                units.setdefault(kind, unit)
+                sort = f"{bushing[1][0].lower()}{bushing[2].lower()}"
+                columns.setdefault(sort, index)
+                units.setdefault(sort, unit)
                 continue
-            kind = coordinate[1].lower() if coordinate else next((KINDS[word] for word in text.lower().split()
+            sort = coordinate[1].lower() if coordinate else next((KINDS[word] for word in text.lower().split()
                                                                   if word in KINDS), "")  # fmt: skip
-            if not kind and plain and plain[0] in ("velocity", "speed", "geschwindigkeit", "v"):
-                kind = "velocity"
-            elif not kind and plain and plain[0] in ("force", "kraft", "f") and "velocity" in columns:
-                kind = "force"
-            elif not kind and plain and set(plain) <= {*AXLES, "axle", *CORNERS, "f", "r", "value"}:
+            if not sort and plain and plain[0] in ("velocity", "speed", "geschwindigkeit", "v"):
+                sort = "velocity"
+            elif not sort and plain and plain[0] in ("force", "kraft", "f") and "velocity" in columns:
+                sort = "force"
+            elif not sort and plain and set(plain) <= {*AXLES, "axle", *CORNERS, "f", "r", "value"}:
                 word = next((word for word in plain if word in (*AXLES, *CORNERS, "f", "r")), "")
                 axles[index] = CORNERS.get(word, ({"f": "front", "r": "rear"}.get(word, word), ""))
-            if kind == "name":
+            if sort == "name":
                 names.append(index)
-            if kind and kind not in columns:
-                columns[kind] = index
-                units[kind] = unit
+            if sort and sort not in columns:
+                columns[sort] = index
+                units[sort] = unit
             elif unit and index in axles:
                 units[f"axle{index}"] = unit
         points = {"x", "y", "z"} <= set(columns)
-        known = (
+        listed = (
             points
             or bool(_triples(columns))
             or {"velocity", "force"} <= set(columns)
             or "value" in columns
             or len(axles) > 1
         )
-        if not known:
+        if not listed:
             return False
         if "name" not in columns:
             free = [index for index in range(len(row.cells)) if index not in {*columns.values(), *axles}]
@@ -250,7 +250,7 @@ class _Reader:
         if None in numbers or not text:
             if text and all(number is None for number in numbers):
                 return self._plain_row(row, values)
-            raise DataError(f"{row.place}: point {text!r} has no three coordinates; complete or remove the row")
+            raise DataError(f"{row.where}: point {text!r} has no three coordinates; complete or remove the row")
         unit = self._cell(row, "unit") or heads.units["x"] or self.unit
         name = self._name(row, text)
         self._add_point(row, name, (numbers[0], numbers[1], numbers[2]), unit)  # type: ignore[arg-type]
@@ -262,9 +262,9 @@ class _Reader:
         at = heads.columns["name"] if heads is not None and "name" in heads.columns else next(
             (index for index, cell in enumerate(row.cells) if cell and values[index] is None), -1)  # fmt: skip
         if at < 0 or at >= len(row.cells) or not row.cells[at]:
-            raise DataError(f"{row.place}: {', '.join(filter(None, row.cells))} has no name; name each row of numbers")
+            raise DataError(f"{row.where}: {', '.join(filter(None, row.cells))} has no name; name each row of numbers")
         if heads is not None and len(heads.names) > 1:
-            # A symbol and its description: the first one that is known.
+            # A symbol and its description: the first one that is listed.
             others = [index for index in heads.names if index < len(row.cells) and row.cells[index]]
             at = next((index for index in others if number_of(self._name(row, name_and_unit(row.cells[index])[0]))), at)
         text, unit = name_and_unit(row.cells[at])
@@ -302,39 +302,39 @@ class _Reader:
 
     def _add_number(self, row: Row, name: NameWords, value: float | str | None, unit: str) -> None:
         """Enter a number; "wheel centre x" is a coordinate of a point."""
-        last = name.words[-1] if name.words else ""
+        last = name.terms[-1] if name.terms else ""
         if last in ("x", "y", "z") and isinstance(value, float) and number_of(name) is None:
-            point = NameWords(text=re.sub(r"[\s_,.-]*[xyzXYZ]$", "", name.text), words=name.words[:-1], axle=name.axle,
+            point = NameWords(text=re.sub(r"[\s_,.-]*[xyzXYZ]$", "", name.text), terms=name.terms[:-1], axle=name.axle,
                               side=name.side)  # fmt: skip
             if (key := point_of(point)) is not None and key != "cog":
-                self.coordinates.setdefault((key, name.axle, name.side), {})[last] = (value, unit, row.place, point)
+                self.coordinates.setdefault((key, name.axle, name.side), {})[last] = (value, unit, row.where, point)
                 return
         assert value is not None  # fmt: skip
-        self.found.numbers.append(Number(place=row.place, name=name, value=value, unit=unit))
+        self.content.numbers.append(Number(where=row.where, name=name, value=value, unit=unit))
 
     def _joined(self, parts: dict[str, tuple[float, str, str, NameWords]], axle: str, side: str) -> None:
-        _, unit, place, name = next(iter(parts.values()))
+        _, unit, where, name = next(iter(parts.values()))
         if set(parts) != set("xyz"):
-            raise DataError(f"{place}: point {name.text!r} lacks {', '.join(sorted(set('xyz') - set(parts)))}; add it")
+            raise DataError(f"{where}: point {name.text!r} lacks {', '.join(sorted(set('xyz') - set(parts)))}; add it")
         at = (parts["x"][0], parts["y"][0], parts["z"][0])
-        self.found.points.append(Point(place=place, name=name, at=at, unit=unit or self.unit))
+        self.content.points.append(Point(where=where, name=name, at=at, unit=unit or self.unit))
 
     def _add_point(self, row: Row, name: NameWords, at: tuple[float, float, float], unit: str) -> None:
         # The name of a file, "front.csv", holds for its points alone: a table of numbers is one of the car.
         ends = {word for word in words_of(self.stem) if word in AXLES}
         if not name.axle and len(ends) == 1:
             name = replace(name, axle=ends.pop())
-        self.found.points.append(Point(place=row.place, name=name, at=at, unit=unit))
+        self.content.points.append(Point(where=row.where, name=name, at=at, unit=unit))
 
     def _curve_row(self, row: Row, pair: tuple[float, float]) -> None:
-        heads, last = self.heads, self.found.curves[-1] if self.found.curves else None
+        heads, last = self.heads, self.content.curves[-1] if self.content.curves else None
         assert heads is not None  # fmt: skip
         units = (heads.units["velocity"], heads.units["force"])
         if last is None or not self.curve:
-            last = Curve(place=row.place, axle=self.axle, rows=(), units=units)
-            self.found.curves.append(last)
+            last = Curve(where=row.where, axle=self.axle, rows=(), units=units)
+            self.content.curves.append(last)
         self.curve.append((pair[0], pair[1]))
-        self.found.curves[-1] = Curve(place=last.place, axle=last.axle, rows=tuple(self.curve), units=units)
+        self.content.curves[-1] = Curve(where=last.where, axle=last.axle, rows=tuple(self.curve), units=units)
 
     def _name(self, row: Row, text: str, axle: str = "", side: str = "") -> NameWords:
         """Return the words of a name, with axle and side of its columns, its column head or the title above."""
@@ -342,24 +342,24 @@ class _Reader:
         if index := re.search(r"\(([12])\)$", text):
             # CarSim counts axles: L_TRACK(2).
             text, axle = text[: index.start()], AXLES[int(index[1]) - 1]
-        name = name_words(text, right_letter=letter, place=row.place)
+        name = name_words(text, right_letter=letter, where=row.where)
         if point_of(name) in (None, "cog") and number_of(name) is None and "(" in text:
-            name = name_words(re.sub(r"\([^)]*\)", " ", text), right_letter=letter, place=row.place)
+            name = name_words(re.sub(r"\([^)]*\)", " ", text), right_letter=letter, where=row.where)
         column = words_of(self._cell(row, "axle"))
         axle = axle or next((word for word in column if word in AXLES), "")
         said = words_of(self._cell(row, "side"))
         both = {"left", "right"} <= set(said)
         side = side or ("" if both else next((word for word in said if word in ("left", "right", "single")), ""))
-        return NameWords(text=text, words=name.words, axle=axle or name.axle or self.axle,
+        return NameWords(text=text, terms=name.terms, axle=axle or name.axle or self.axle,
                          side=side or name.side or self.side)  # fmt: skip
 
-    def _cell(self, row: Row, kind: str) -> str:
-        index = None if self.heads is None else self.heads.columns.get(kind)
+    def _cell(self, row: Row, sort: str) -> str:
+        index = None if self.heads is None else self.heads.columns.get(sort)
         return row.cells[index] if index is not None and index < len(row.cells) else ""
 
     def _remark(self, text: str, *, title: bool) -> None:
         """Keep a text; a title such as "Front axle [mm]" holds for the rows below."""
-        self.found.remarks.append(text)
+        self.content.remarks.append(text)
         self.curve = []
         if title:
             self._title(text)
@@ -369,17 +369,17 @@ class _Reader:
             self.unit = unit
 
     def _title(self, text: str) -> None:
-        words = words_of(text)
-        ends = {word for word in words if word in AXLES}
-        sides = {word for word in words if word in ("left", "right")}
+        terms = words_of(text)
+        ends = {word for word in terms if word in AXLES}
+        sides = {word for word in terms if word in ("left", "right")}
         self.axle = ends.pop() if len(ends) == 1 else ""
         self.side = sides.pop() if len(sides) == 1 else ""
 
 
 def _length_unit(text: str) -> str:
     """Return the unit of length that a remark states: "all in mm", "units: mm", "x [m]"; "" for none."""
-    words = list(_units(text))
-    return words[0] if len(set(words)) == 1 else ""
+    terms = list(_units(text))
+    return terms[0] if len(set(terms)) == 1 else ""
 
 
 def _units(text: str) -> Iterator[str]:

@@ -65,16 +65,16 @@ def file_statements(path: Path) -> Statements:
 def _tyre(path: Path) -> Statements:
     """Return radius, vertical stiffness and damping of a tyre file as numbers of both axles."""
     tyre = read_tyre_file(path)
-    found = Statements(file=path.name, tyre=tyre)
-    for key, words, value, unit in (
+    content = Statements(file=path.name, tyre=tyre)
+    for key, terms, value, unit in (
         ("UNLOADED_RADIUS", "tyre radius unloaded", tyre["UNLOADED_RADIUS"], "m"),
         ("VERTICAL_STIFFNESS", "tyre rate", tyre.vertical_stiffness, "N/m"),
         ("VERTICAL_DAMPING", "tyre damping", tyre["VERTICAL_DAMPING"], "N s/m"),
     ):
         if value:
-            name = NameWords(text=key, words=tuple(words.split()), axle="", side="")
-            found.numbers.append(Number(place=str(path), name=name, value=value, unit=unit))
+            name = NameWords(text=key, terms=tuple(terms.split()), axle="", side="")
+            content.numbers.append(Number(where=str(path), name=name, value=value, unit=unit))
     for block, names in tyre.unused.items():
         text = f"[{block}] {', '.join(names)}: of large or combined slip, camber and moments"
-        found.left_out.append(("", text))
-    return found
+        content.left_out.append(("", text))
+    return content

@@ -28,7 +28,7 @@ class Stated:
     """Number in SI units with its row: place, name and value as in the file."""
 
     value: float
-    place: str
+    where: str
     text: str
 
 
@@ -54,7 +54,7 @@ Values = dict[tuple[str, str], Stated]
 """Numbers by key and axle, "" for the whole car or both axles."""
 
 
-def read_numbers(found: Statements, result: CarNumbers) -> Values:
+def read_numbers(content: Statements, result: CarNumbers) -> Values:
     """Return the numbers of a table in SI units by key and axle; enter guesses and what is left out.
 
     Raises:
@@ -62,38 +62,38 @@ def read_numbers(found: Statements, result: CarNumbers) -> Values:
     """
     values: Values = {}
     corners: dict[tuple[str, str], dict[str, Stated]] = {}
-    per_wheel, symbols = _by_the_sum(found), list[str]()
-    for row in found.numbers:
-        known = number_of(row.name)
-        if known is None and row.name.axle and row.name.axle not in words_of(row.name.text):
+    per_wheel, symbols = _by_the_sum(content), list[str]()
+    for row in content.numbers:
+        listed = number_of(row.name)
+        if listed is None and row.name.axle and row.name.axle not in words_of(row.name.text):
             # The axle of a title above it does not hold for a number of the whole car.
-            known = number_of(replace(row.name, axle=""))
+            listed = number_of(replace(row.name, axle=""))
         if isinstance(row.value, str):
             if row.name.has("tyre") or row.name.has("wheel"):
                 _enter_size(row, result)
             else:
-                result.left_out.append((row.place, f"{row.name.text!r}: no number of a car here"))
+                result.left_out.append((row.where, f"{row.name.text!r}: no number of a car here"))
             continue
-        if known is None:
-            result.left_out.append((row.place, f"{row.name.text!r} = {row.value:g}: no number of a car here"))
+        if listed is None:
+            result.left_out.append((row.where, f"{row.name.text!r} = {row.value:g}: no number of a car here"))
             continue
-        key, axle, symbol = known
+        key, axle, symbol = listed
         if key == "axle_load" and row.unit.strip() == "%":
             key = "front_share"
-        value = Stated(value=_si(row, key, result), place=row.place, text=_text(row))
-        if symbol and len(row.name.words) <= 2 and row.name.text.lower() not in ("mass", "wheelbase"):
+        value = Stated(value=_si(row, key, result), where=row.where, text=_text(row))
+        if symbol and len(row.name.terms) <= 2 and row.name.text.lower() not in ("mass", "wheelbase"):
             symbols.append(f"{row.name.text} {key_words(key, axle)}")
         value = _of_axle(row, key, value, result, per_wheel)
         _require_size(row, key, value.value)
         if row.name.side in ("left", "right"):
             sides = corners.setdefault((key, axle), {})
             if row.name.side in sides:
-                raise DataError(f"{row.place}: {row.name.text!r} is stated twice; remove one")
+                raise DataError(f"{row.where}: {row.name.text!r} is stated twice; remove one")
             sides[row.name.side] = value
             continue
         if (key, axle) in values and abs(values[key, axle].value - value.value) > 1e-6 * abs(value.value):
             raise DataError(
-                f"{row.place}: {row.name.text!r} and {values[key, axle].text} ({values[key, axle].place}) are two "
+                f"{row.where}: {row.name.text!r} and {values[key, axle].text} ({values[key, axle].where}) are two "
                 f"values of {key_words(key, axle)}; remove one, or name the axle"
             )
         values[key, axle] = value
@@ -115,7 +115,7 @@ def _si(row: Number, key: str, result: CarNumbers) -> float:
         if key == "front_share" and row.unit == "kg":
             unit = None
         if unit is None or unit.dimension != quantity.dimension:
-            raise DataError(f"{row.place}: {row.name.text!r} has the unit {row.unit!r}, but {key_words(key, '')} needs "
+            raise DataError(f"{row.where}: {row.name.text!r} has the unit {row.unit!r}, but {key_words(key, '')} needs "
                             f"one such as {' or '.join(GUESSED[quantity.dimension])}; correct one of both")  # fmt: skip
         return row.value * unit.factor
     if key == "front_share" and row.value > 1.0:
@@ -124,29 +124,29 @@ def _si(row: Number, key: str, result: CarNumbers) -> float:
     fitting = [(text, unit.factor) for text in GUESSED[quantity.dimension]
                if (unit := unit_factor(text)) is not None and low <= row.value * unit.factor <= high]  # fmt: skip
     if len(fitting) != 1:
-        raise DataError(f"{row.place}: {row.name.text!r} = {row.value:g} has no unit, and the size of "
+        raise DataError(f"{row.where}: {row.name.text!r} = {row.value:g} has no unit, and the size of "
                         f"{'several units' if fitting else 'none'} of {', '.join(GUESSED[quantity.dimension])}; write "
                         "its unit")  # fmt: skip
     if fitting[0][0] != "-":
-        result.guessed.append((row.place, f"{row.name.text!r} = {row.value:g}: in {fitting[0][0]}, by its size"))
+        result.guessed.append((row.where, f"{row.name.text!r} = {row.value:g}: in {fitting[0][0]}, by its size"))
     return row.value * fitting[0][1]
 
 
-def _by_the_sum(found: Statements) -> bool | None:
+def _by_the_sum(content: Statements) -> bool | None:
     """Return whether unsprung masses are those of a wheel, by the mass of the car and that of its body; None: unknown.
 
     m = m_s + m_uf + m_ur with masses of axles, m = m_s + 2 m_uf + 2 m_ur with those of wheels.
     """
     masses: dict[str, list[float]] = {}
-    for row in found.numbers:
-        known = number_of(row.name)
+    for row in content.numbers:
+        listed = number_of(row.name)
         if (
-            known is not None
+            listed is not None
             and isinstance(row.value, float)
-            and known[0] in ("kerb_mass", "sprung_mass", "unsprung_mass")
+            and listed[0] in ("kerb_mass", "sprung_mass", "unsprung_mass")
         ):
             unit = unit_factor(row.unit or "kg", MASS)
-            masses.setdefault(known[0], []).append(row.value * (1.0 if unit is None else unit.factor))
+            masses.setdefault(listed[0], []).append(row.value * (1.0 if unit is None else unit.factor))
     sizes = [len(masses.get(key, ())) for key in ("kerb_mass", "sprung_mass", "unsprung_mass")]
     if sizes not in ([1, 1, 2], [1, 1, 1]):
         return None
@@ -160,20 +160,20 @@ def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_su
     """Return masses of an axle from those of a wheel; `by_the_sum`: see `_by_the_sum`."""
     if key not in ("unsprung_mass", "axle_load", "sprung_mass") or row.name.side in ("left", "right"):
         return value
-    words, axle = set(row.name.words) | set(row.unit.lower().split()), row.name.axle
-    per_wheel = bool(words & set(PER_WHEEL))
+    terms, axle = set(row.name.terms) | set(row.unit.lower().split()), row.name.axle
+    per_wheel = bool(terms & set(PER_WHEEL))
     if key == "unsprung_mass" and by_the_sum is not None:
         per_wheel = by_the_sum
     elif not per_wheel and key == "unsprung_mass" and "axle" not in row.name.text.lower():
         if ONE_WHEEL < value.value < WHOLE_AXLE:
-            raise DataError(f"{row.place}: {row.name.text!r} = {value.value:g} kg may be the mass of a wheel or of an "
+            raise DataError(f"{row.where}: {row.name.text!r} = {value.value:g} kg may be the mass of a wheel or of an "
                             "axle; write \"per wheel\" or \"axle\" in its name")  # fmt: skip
         per_wheel = value.value <= ONE_WHEEL
         result.guessed.append(
-            (row.place, f"{row.name.text!r}: of {'a wheel' if per_wheel else 'an axle'}, by its size")
+            (row.where, f"{row.name.text!r}: of {'a wheel' if per_wheel else 'an axle'}, by its size")
         )
-    if per_wheel and (key != "sprung_mass" or axle or words & {"corner", "quarter"}):
-        return Stated(value=2.0 * value.value, place=value.place, text=f"2 x {value.text}")
+    if per_wheel and (key != "sprung_mass" or axle or terms & {"corner", "quarter"}):
+        return Stated(value=2.0 * value.value, where=value.where, text=f"2 x {value.text}")
     return value
 
 
@@ -181,21 +181,21 @@ def _both_sides(key: str, axle: str, sides: Mapping[str, Stated], result: CarNum
     """Return the number of an axle from those of its two wheels: the sum of masses, the mean of all others."""
     if set(sides) != {"left", "right"}:
         (one,) = sides.values()
-        result.guessed.append((one.place, f"{one.text}: the same on the other side"))
+        result.guessed.append((one.where, f"{one.text}: the same on the other side"))
         factor = 2.0 if key in ("axle_load", "unsprung_mass", "sprung_mass") else 1.0
-        return Stated(value=factor * one.value, place=one.place, text=one.text)
+        return Stated(value=factor * one.value, where=one.where, text=one.text)
     left, right = sides["left"], sides["right"]
     if abs(left.value - right.value) > AGREE * abs(left.value):
-        result.left_out.append((left.place, f"difference of {left.text} and {right.text}: the car is symmetric"))
+        result.left_out.append((left.where, f"difference of {left.text} and {right.text}: the car is symmetric"))
     factor = 1.0 if key in ("axle_load", "unsprung_mass", "sprung_mass") else 0.5
-    return Stated(value=factor * (left.value + right.value), place=left.place, text=f"{left.text}, {right.text}")
+    return Stated(value=factor * (left.value + right.value), where=left.where, text=f"{left.text}, {right.text}")
 
 
 def _require_size(row: Number, key: str, value: float) -> None:
     low, high = QUANTITIES[key].sizes
     if not (math.isfinite(value) and low <= value <= high):
         unit = SI[QUANTITIES[key].dimension]
-        raise DataError(f"{row.place}: {_text(row)} is {shown(value, 4)} {unit}, must be {low:g} to {high:g} {unit}; "
+        raise DataError(f"{row.where}: {_text(row)} is {shown(value, 4)} {unit}, must be {low:g} to {high:g} {unit}; "
                         "check value and unit")  # fmt: skip
 
 
@@ -210,6 +210,6 @@ def key_words(key: str, axle: str) -> str:
 
 def _enter_size(row: Number, result: CarNumbers) -> None:
     if row.name.axle == "rear" and "tyre_size" in result.stated:
-        result.left_out.append((row.place, f"{row.name.text!r} {row.value}: the car has one radius, of the front"))
+        result.left_out.append((row.where, f"{row.name.text!r} {row.value}: the car has one radius, of the front"))
         return
-    result.stated["tyre_size"], result.origins["tyre_size"] = row.value, f"{row.name.text} ({row.place})"
+    result.stated["tyre_size"], result.origins["tyre_size"] = row.value, f"{row.name.text} ({row.where})"

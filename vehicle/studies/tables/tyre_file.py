@@ -129,8 +129,8 @@ def read_tyre_file(path: Path) -> TyreFile:
         ConfigurationError: the file is missing.
         DataError: it is of another tyre model, or a coefficient is missing or impossible.
     """
-    found = read_property_file(path)
-    model = found.blocks.get("MODEL")
+    content = read_property_file(path)
+    model = content.blocks.get("MODEL")
     values = {} if model is None else model.values
     name = values.get("PROPERTY_FILE_FORMAT", "").upper().strip("'\"")
     fit = values.get("FITTYP", "").split(".")[0].strip() or FORMATS.get(name, "")
@@ -139,7 +139,7 @@ def read_tyre_file(path: Path) -> TyreFile:
             f"{path}: is of the tyre model {name or fit or 'without FITTYP in [MODEL]'}, which is not read; fit or "
             f"export the tyre as one of {', '.join(READ.values())} (FITTYP {', '.join(READ)})"
         )
-    coefficients, unused = _coefficients(found)
+    coefficients, unused = _coefficients(content)
     tyre = TyreFile(file=path.name, model=READ[fit], fit=fit, coefficients=coefficients, unused=unused)
     for key, low, high, unit in (("FNOMIN", 500.0, 1e5, "N"), ("UNLOADED_RADIUS", 0.15, 1.0, "m"),
                                  ("VERTICAL_STIFFNESS", 2e4, 5e6, "N/m")):  # fmt: skip
@@ -156,24 +156,24 @@ OTHER_MODELS = ("PAC89", "PAC94", "FIALA", "UA", "FTIRE", "CTIRE", "5.2.1", "PAC
 """Models of the same file format that are not read."""
 
 
-def _coefficients(found: PropertyFile) -> tuple[dict[str, float], dict[str, list[str]]]:
+def _coefficients(content: PropertyFile) -> tuple[dict[str, float], dict[str, list[str]]]:
     """Return the coefficients that count in SI units, and the names of the others by block."""
-    length, force, time = (found.unit(name) for name in ("LENGTH", "FORCE", "TIME"))
+    length, force, time = (content.unit(name) for name in ("LENGTH", "FORCE", "TIME"))
     units = {"UNLOADED_RADIUS": length, "FNOMIN": force, "VERTICAL_STIFFNESS": force / length,
              "VERTICAL_DAMPING": force * time / length, "LONGITUDINAL_STIFFNESS": force / length,
              "LATERAL_STIFFNESS": force / length}  # fmt: skip
     coefficients: dict[str, float] = {}
     unused: dict[str, list[str]] = {}
-    for block, content in found.blocks.items():
-        for name, text in content.values.items():
+    for block, entries in content.blocks.items():
+        for name, text in entries.values.items():
             if name in USED:
-                value = found.number(block, name)
+                value = content.number(block, name)
                 assert value is not None  # fmt: skip
                 coefficients[name] = value * units.get(name, 1.0)
             elif any(part in block for part in BLOCKS) and _not_zero(text):
                 unused.setdefault(block, []).append(name)
-    if (curve := found.blocks.get("DEFLECTION_LOAD_CURVE")) is not None and curve.rows:
-        slope = _slope(found.points("DEFLECTION_LOAD_CURVE", length, force), coefficients.get("FNOMIN", 0.0))
+    if (curve := content.blocks.get("DEFLECTION_LOAD_CURVE")) is not None and curve.rows:
+        slope = _slope(content.points("DEFLECTION_LOAD_CURVE", length, force), coefficients.get("FNOMIN", 0.0))
         coefficients["VERTICAL_STIFFNESS"] = slope
     return coefficients, unused
 

@@ -54,7 +54,7 @@ def unit_factor(text: str, expected: Dimension | None = None) -> Factor | None:
 
     Args:
         text: unit, for example "N/mm".
-        expected: dimension of the quantity; None if it is not known.
+        expected: dimension of the quantity; None if it is not listed.
     """
     plain = text.strip().strip("[]").strip().lower()
     for sign, replacement in (("²", "^2"), ("³", "^3"), ("·", " "), ("*", " "), (".", " "), ("–", "-"), ("−", "-")):
@@ -63,11 +63,11 @@ def unit_factor(text: str, expected: Dimension | None = None) -> Factor | None:
     plain = re.sub(r"/ *\( *m */ *s *\)", " s/m", plain)
     plain = re.sub(r"/ *\( *mm */ *s *\)", " s/mm", plain)
     plain = re.sub(r"(?<=[a-z])-(?=[a-z])", " ", plain).replace("(", " ").replace(")", " ").strip()
-    found = _product(plain)
-    if found is not None and expected is not None and found.dimension != expected:
+    content = _product(plain)
+    if content is not None and expected is not None and content.dimension != expected:
         force = _product(re.sub(r"\blbs?\b", "lbf", plain))
-        found = force if force is not None and force.dimension == expected else found
-    return found
+        content = force if force is not None and force.dimension == expected else content
+    return content
 
 
 def _product(text: str) -> Factor | None:
