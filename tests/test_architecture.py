@@ -30,8 +30,7 @@ WINGS = {
 }
 """Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
 
-DATA = {"inputs", "templates", "vehicles"}
-"""Rooms that hold no modules."""
+DATA = {"inputs", "templates", "vehicles"}  # rooms that hold no modules
 
 BELOW = EVERYWHERE | {"handed_down", "machine", "replacement", "threads", "version"}
 """Modules that stand below all wings."""
@@ -59,7 +58,7 @@ ROOMS: dict[str, set[str]] = {
     "parameters": {"core", "formats"},
     "laws": {"core", "formats", "parameters"},
     "flexbody": {"analysis", "formats", "parameters", "replacement"},
-    **{"shapes": set(), "tables": {"formats"}},
+    "shapes": set(),
     "assembly": {"flexbody", "laws", "parameters", "shapes"},
     "simulation": {"assembly", "core", "excitation", "flexbody", "laws", "machine", "parameters"},
     "kinematics": {"assembly", "flexbody", "laws", "parameters", "simulation"},
@@ -82,6 +81,7 @@ ROOMS: dict[str, set[str]] = {
     | {"records", "reduced", "rendering", "report", "simulation", "targets"},
     "bench": {"analysis", "car", "excitation", "figures", "formats", "linear", "output", "page"}
     | {"parameters", "reduced", "rendering", "report", "shapes", "threads"},
+    "tables": {"formats"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "tables", "threads"},
     "mounts": {"formats", "parameters"},
     "dampers": {"core", "formats", "parameters", "records", "rendering", "report", "threads"},
@@ -93,9 +93,9 @@ ROOMS: dict[str, set[str]] = {
     "optimisation": {"analysis", "car", "excitation", "figures", "formats", "output", "parameters", "rendering"}
     | {"replacement", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
-    | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
-    | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
-    | {"tables", "threads", "tuning", "version"},
+    | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output", "page"}
+    | {"parameters", "records", "rendering", "replication", "report", "sweeps", "tables", "threads", "tuning"}
+    | {"version"},
     "__init__": {"car", "comparison", "dampers", "excitation", "figures", "fmu", "formats", "handed_down"}
     | {"laws", "mounts", "optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},

@@ -1,4 +1,4 @@
-"""Report of a table of a car: what was understood, guessed and left out; its points over those of the template."""
+"""Report of a table of a car: what was understood, guessed and left out; its points over the template."""
 
 import math
 from pathlib import Path
@@ -57,8 +57,8 @@ def table_json(source: CarTable) -> dict[str, Any]:
 
 
 def plot_table(path: Path, result: NewCar, template: TemplateCar, source: CarTable) -> None:
-    """Write the picture of the points of a table over those of the template."""
-    title = f"Points of {source.file} over those of {template.name}"
+    """Write the picture of the points of a table over the template."""
+    title = f"Points of {source.file} over the points of {template.name}"
     caption = (
         "x to the rear, y to the right, z up, frame of the vehicle file; a line joins a point with its place before"
     )
@@ -66,7 +66,7 @@ def plot_table(path: Path, result: NewCar, template: TemplateCar, source: CarTab
 
 
 def _points(result: NewCar, template: TemplateCar, source: CarTable):  # type: ignore[no-untyped-def]
-    """Return by axle the points of the car from the table, those from the template, and those of the template."""
+    """Return by axle the points of the car from the table, from the template, and all of the template."""
     axles = {}
     for word in template.wheels:
         placed = car_points(result, template, word)

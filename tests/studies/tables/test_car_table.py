@@ -81,7 +81,8 @@ def test_points_are_turned_into_the_frame_of_the_vehicle(frame, side, tmp_path):
 
 @pytest.mark.parametrize(("head", "unit"), [("name,x [m],y [m],z [m]", 1.0),
                                             ("name,x (in),y (in),z (in)", 1 / 0.0254),
-                                            ("Units: mm\n\npoint,X,Y,Z", 1e3), ("name,x_mm,y_mm,z_mm", 1e3)])  # fmt: skip
+                                            ("Units: mm\n\npoint,X,Y,Z", 1e3),
+                                            ("name,x_mm,y_mm,z_mm", 1e3)])  # fmt: skip
 def test_units_of_points(head, unit, tmp_path):
     require_points(read(tmp_path, f"{head}\n" + rows(WORDS["plain"], unit=unit)), "front")
 
@@ -184,16 +185,16 @@ BAD = {
     "remark against points": ("axes: x rearward, y right, z up\nname,x,y,z\n" + rows(WORDS["plain"], (-1, -1, 1)),
                               "states x rearward, but its points show x forward"),
     "no direction of x": ("name,x,y,z\n" + WHEEL + "strut top,10,570,800\nlower ball joint,0,700,180\n",
-                          "direction of x"),
+                          "no direction of x"),
     "points without a unit": ("name,x,y,z\nwheel centre,0,29.5,12\nstrut top,1,22,34\n", "no half track in m or mm"),
     "no length": ("name,x [kg],y [kg],z [kg]\n" + WHEEL, "is no length"),
     "no wheel centre": ("axes: adams\nname,x,y,z\nstrut top,10,570,800\nlower ball joint,0,700,180\n", "wheel centre"),
-    "across the car": ("axes: adams\nname,x,y,z\n" + WHEEL + "strut top,10,-570,800\n", "on the other side"),
+    "across the car": ("axes: adams\nname,x,y,z\n" + WHEEL + "strut top,10,-570,800\n", "across the middle"),
     "missing coordinate": ("name,x,y,z\nwheel centre,0,,300\n", "no three coordinates"),
     "two coordinates": ("front wheel centre x,0\nfront wheel centre y,750\n", "lacks z"),
     "which axle": ("name,x,y,z\nfront wheel centre,0,750,300\nrear wheel centre,2600,750,300\nlca front,1,2,3\n",
-                   "does not say which axle"),
-    "axle or place": ("name,x,y,z\nlca rear front,0,400,200\n", "two places is the axle"),
+                   "names no axle"),
+    "axle or place": ("name,x,y,z\nlca rear front,0,400,200\n", "two places, one of which is the axle"),
     "no size": ("name,value\nwheelbase,26.5\n", "has no unit"),
     "wrong unit": ("name,value,unit\nwheelbase,2.6,kg\n", "needs one such as m or mm"),
     "impossible": ("name,value,unit\nwheelbase,2600,m\n", "2600 m, must be 1 to 8 m"),

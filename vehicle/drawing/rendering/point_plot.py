@@ -1,4 +1,4 @@
-"""Picture of the points of an axle over those of its template: from the side, from behind and from above."""
+"""Picture of the points of an axle over its template: from the side, from behind and from above."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -35,7 +35,7 @@ def plot_points(path: Path, axles: Mapping[str, tuple[Points, Points, Points]], 
                     axis.scatter(across, upward, s=26, zorder=3, **style)
                 for name, point in {**kept, **of_table}.items():
                     if name in template:
-                        ends = [[1e3 * place[index] for place in (template[name], point)] for index in (right, up)]
+                        ends = [[1e3 * at[index] for at in (template[name], point)] for index in (right, up)]
                         axis.plot(*ends, color="#9a9a9a", linewidth=0.6)
                     axis.annotate(name, (1e3 * point[right], 1e3 * point[up]), xytext=(4, 3), fontsize=6.5, color=INK,
                                   textcoords="offset points")  # fmt: skip

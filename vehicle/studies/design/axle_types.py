@@ -13,16 +13,16 @@ AXLE_TYPES = read_table(Path(__file__).parent / "axles.toml")
 """Axles by the names of their templates: points relative to the wheel centre, parts and bushings."""
 
 OF_WHEEL = ("tyre", "brake_disc", "caliper")
-"""Parts that stay those of the axle before."""
+"""Parts that stay as they are."""
 
 BAR = 700.0
-"""Torsional stiffness of the stabilizer where the axle before has none [N m/rad]; assumed: that of the sedan."""
+"""Torsional stiffness of the stabilizer where the axle before has none [N m/rad]; assumed, from the sedan."""
 
 
 def axle_type_names(name: str) -> tuple[str, ...]:
-    """Return the names of the hardpoints and parts of a type, as `TemplateCar.point_names`."""
+    """Return the names of the hardpoints and parts of a type, see `TemplateCar.point_names`."""
     axle = AXLE_TYPES[name]
-    others = [f"{kind}.{part}" for kind in ("parts", "bushings") for part in axle[kind]]
+    others = [f"{section}.{part}" for section in ("parts", "bushings") for part in axle[section]]
     return ("wheel_center", "tyre_patch", *axle["hardpoints"], *others, *(f"parts.{part}" for part in OF_WHEEL))
 
 

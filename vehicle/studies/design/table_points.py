@@ -16,7 +16,7 @@ from vehicle.studies.tables.car_table import CarTable
 
 
 def put_points(table: dict[str, Any], template: TemplateCar, points: CarTable) -> Sources:
-    """Put the points of a table into a vehicle table whose axles stand at their places; return their sources.
+    """Put the points of a table into a vehicle table with placed axles; return their sources.
 
     A point is placed from the wheel centre of its axle. The lower seat of a spring around a strut that the table leaves
     out stays at its share of the line through the strut.
@@ -66,8 +66,8 @@ def put_parameters(table: dict[str, Any], template: TemplateCar, points: CarTabl
     """
     sources = Sources()
     for (word, path), (value, origin) in points.parameters.items():
-        own = path.removeprefix("tyre.")
-        whole = f"{template.tyre_paths[word]}.{own}" if own != path else f"{template.axle(word)}.{path}"
+        suffix = path.removeprefix("tyre.")
+        whole = f"{template.tyre_paths[word]}.{suffix}" if suffix != path else f"{template.axle(word)}.{path}"
         vector = whole.removesuffix(".z")
         try:
             before = value_at(table, vector.rpartition(".")[0])
@@ -110,9 +110,7 @@ def put_tyre(table: dict[str, Any], template: TemplateCar, points: CarTable) -> 
         }
         for name, (value, origin) in numbers.items():
             if value is None:
-                points.left_out.append(
-                    ("", f"{word} {name}: {tyre.file} has no transient coefficients; as the template")
-                )
+                points.left_out.append(("", f"{word} {name}: {tyre.file} has no transient coefficients; template"))
                 continue
             put(table, {f"{path}.{name}": rounded(value, 6)})
             sources[f"{path}.{name}"] = f"given: {origin}"

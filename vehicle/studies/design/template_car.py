@@ -59,12 +59,12 @@ class TemplateCar:
 
     @property
     def point_names(self) -> dict[str, tuple[str, ...]]:
-        """Return the names of the hardpoints of each axle, and those of its parts and bushings as "parts.knuckle"."""
+        """Return the names of hardpoints, parts and bushings by axle; parts as "parts.knuckle"."""
         axles = {word: self.table[self.axle(word)] for word in AXLES}
         return {
             word: (
                 *axle.get("hardpoints", {}),
-                *(f"{kind}.{name}" for kind in ("parts", "bushings") for name in axle.get(kind, {})),
+                *(f"{section}.{name}" for section in ("parts", "bushings") for name in axle.get(section, {})),
             )
             for word, axle in axles.items()
         }

@@ -47,7 +47,7 @@ def with_tyre_size(stated: StatedNumbers, template: TemplateCar, ratio: float) -
     """Return stated numbers with the loaded radius of a tyre of stated size or free radius: free radius less F / k.
 
     F is the static load of a front wheel, stated or in proportion to the mass, k the stated stiffness of the front
-    tyres, or that of the template, scaled as by `scaled_parts`; a stated wheel hop, which changes k, is left out.
+    tyres, or of the template, scaled by `scaled_parts`; a stated wheel hop, which changes k, is left out.
 
     Args:
         stated: stated numbers.

@@ -1,7 +1,7 @@
 """Unsprung masses of a new car: the parts of each axle, scaled to the stated sum.
 
-The unsprung mass sum m dz_m / dz is linear in the masses of the parts, so one factor meets it; moments of inertia, that
-of parts of the same size, take the same factor.
+The unsprung mass sum m dz_m / dz is linear in the masses of the parts, so one factor is sufficient; moments of
+inertia of parts of equal size take the same factor.
 """
 
 from typing import Any
@@ -24,21 +24,21 @@ def put_unsprung(table: dict[str, Any], template: TemplateCar, stated: StatedNum
         if mass is None:
             continue
         axle = template.axle(word)
-        found = 2.0 * axle_ride(new_car_of(table, template).model, axle, roll=False).unsprung_mass
+        before = 2.0 * axle_ride(new_car_of(table, template).model, axle, roll=False).unsprung_mass
         for path in paths(table):
             whole = path.removesuffix(path[-2:]) if path[-2:] in (".x", ".y", ".z") else path
             unit = template.vehicle.quantity_of(whole).get("unit") if path.startswith(f"{axle}.") else None
             if unit not in ("kg", "kg m2") or whole in sources:
                 continue
-            put(table, {whole: times(value_at(table, whole), mass / found)})
+            put(table, {whole: times(value_at(table, whole), mass / before)})
             sources[whole] = (
-                f"template {template.name} times {mass / found:.4g}, from {stated.stated(f'unsprung_mass_{word}')}"
+                f"template {template.name} times {mass / before:.4g}, from {stated.stated(f'unsprung_mass_{word}')}"
             )
     return sources
 
 
 def times(value: Any, factor: float) -> Any:
-    """Return a mass, or the moments of a part, times a factor; round-off leaves the moments those of a body."""
+    """Return a mass, or the moments of a part, times a factor; round-off keeps the moments possible."""
     if not isinstance(value, list | tuple):
         return rounded(factor * value, 9)
     numbers = [rounded(factor * item, 9) for item in value]

@@ -1,4 +1,4 @@
-"""Numbers and points of a new car as a table in its own words, which `--table` reads again."""
+"""Numbers and points of a new car as a table that `--table` reads again."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -26,7 +26,7 @@ def table_lines(result: "NewCar", template: TemplateCar, source: CarTable) -> It
     yield ",".join(HEAD)
     for check in result.checks:
         if check.name in source.numbers:
-            # "axle": an unsprung mass without it may be that of a wheel.
+            # "axle": an unsprung mass without it may be of a wheel.
             name = check.name.replace("unsprung_mass", "unsprung_mass_axle")
             yield f"{name},,{check.value:.9g},{check.unit}"
     yield ""

@@ -1,1 +1,1 @@
-"""Tables of cars as people have them: names, values and units of points, masses and rates, from files of any layout."""
+"""Tables of cars: names, values and units of points, masses and rates in any layout."""

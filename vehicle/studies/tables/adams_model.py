@@ -83,7 +83,7 @@ def read_adams_model(path: Path) -> Statements:
             terms = name_words(f"{body.name.replace('.', ' ')} mass", right_letter=letters.get(body.name, ""))
             content.numbers.append(Number(where=str(path), name=terms, value=body.mass, unit=model.mass or "kg"))
     if not (content.points or content.numbers):
-        raise DataError(f"{path}: has no point or part with a listed name; export the hardpoints as a table (CSV)")
+        raise DataError(f"{path}: has no point or part with a known name; export the hardpoints as a table (CSV)")
     if not model.length:
         raise DataError(f"{path}: does not state its unit of length (UNITS or defaults units); add it")
     return content
@@ -171,8 +171,8 @@ def _command(model: _Model, where: str, sort: str, values: dict[str, str]) -> No
         if "mass" in values:
             part.mass = float(_numbers(values["mass"])[0])
     elif "location" in values:
-        owner, _, own = name.rpartition(".")
-        model.points.append((where, own, owner, _numbers(values["location"])))
+        owner, _, last = name.rpartition(".")
+        model.points.append((where, last, owner, _numbers(values["location"])))
 
 
 def _unit(text: str) -> str:

@@ -29,7 +29,7 @@ FRAME_NUMBERS = (None, "8855", "70000", "4130", "j670", "j670e")
 """Numbers of standards that define axes; None: none stated."""
 
 _OF_AXES = re.compile(r"\b(axes|axis|frame|coordinates?|system|convention|achsen|koordinatensystem)\b|^.{0,12}$")
-"""A remark on axes; or one that consists of the name of the frame."""
+"""A remark on axes; or only the name of the frame."""
 
 Vector3 = tuple[float, float, float]
 
@@ -117,7 +117,7 @@ def seen_axes(axles: Mapping[str, Mapping[str, Vector3]], sides: Mapping[str, st
 
 
 SEPARATE = 0.5
-"""Least distance of the wheel centres of two axles in one frame [m]; nearer: each axle has an origin of its own."""
+"""Least distance of the wheel centres of two axles in one frame [m]; nearer: each axle has a separate origin."""
 
 ABOVE = (
     ("strut_top", "lower_ball"),
@@ -127,11 +127,11 @@ ABOVE = (
     ("wheel_center", "tyre_patch"),
     ("strut_top", "wheel_center"),
 )
-"""Points of which the first lies above the second."""
+"""Pairs of points, the upper first."""
 
 
 def axes_of(stated: Mapping[str, str], seen: Mapping[str, str], file: str) -> Axes:
-    """Return the axes of a table; y completes a right-handed frame where nothing tells it.
+    """Return the axes of a table; y completes a right-handed frame where it is not known.
 
     Raises:
         DataError: x or z is not known, words and points contradict each other, or the axes are left-handed.
@@ -143,7 +143,7 @@ def axes_of(stated: Mapping[str, str], seen: Mapping[str, str], file: str) -> Ax
     content = {**seen, **stated}
     for axis, terms in (("x", "x forward or x rearward"), ("z", "z up or z down")):
         if axis not in content:
-            raise DataError(f"{file}: does not tell the direction of {axis}; add a row such as \"axes: x forward, y "
+            raise DataError(f"{file}: states no direction of {axis}; add a row such as \"axes: x forward, y "
                             f"left, z up\" ({terms})")  # fmt: skip
     right_handed = "right" if SIGNS[content["x"]] * SIGNS[content["z"]] > 0.0 else "left"
     if content.get("y", right_handed) != right_handed:

@@ -10,10 +10,10 @@ from vehicle.studies.tables.statements import Point, Statements
 from vehicle.studies.tables.unit_factor import LENGTH, unit_factor
 
 HALF_TRACK = {"m": (0.4, 1.4), "mm": (400.0, 1400.0)}
-"""Sizes of the outermost y of an axle in units that a table without units may have."""
+"""Possible sizes of the outermost y of an axle, by the unit."""
 
 MIRRORED = 5e-4
-"""Largest deviation of a left point from the mirrored right one [m] that is not said: half a millimetre."""
+"""Largest deviation of a left point from the mirrored right one [m] that gets no note: half a millimetre."""
 
 
 @dataclass(slots=True)
@@ -21,8 +21,8 @@ class AxlePoints:
     """Points of one axle, right side.
 
     Attributes:
-        at: x behind the wheel centre, y from the middle of the car, z above the wheel centre, by point [m].
-        places: place and name in the file, by point.
+        at: x and z from the wheel centre, y from the middle of the car, by point [m].
+        rows_of_file: row and name in the file, by point.
         half_track: y of the wheel centre [m].
         radius: height of the wheel centre above the tyre patch [m]; None without a patch.
     """
@@ -40,7 +40,7 @@ class PlacedPoints:
     Attributes:
         axles: by "front" and "rear".
         wheelbase: distance of the wheel centres in x [m]; None if they have no common frame.
-        cog: CoG behind the front wheel centre and above it [m], and whether it is that of the sprung mass; or None.
+        cog: x and z of the CoG from the front wheel centre [m], and whether it is of the sprung mass; or None.
         axes: directions in the table; None without points.
         guessed, left_out: sentences, each with the place or "".
     """
@@ -89,7 +89,7 @@ def placed_points(content: Statements, radius: Mapping[str, float], half_track: 
         distance = SIGNS[axes.x] * (centers["rear"][0] - centers["front"][0])
         placed.wheelbase = distance if abs(distance) > SEPARATE else None
         if placed.wheelbase is None:
-            placed.guessed.append(("", "each axle has an origin of its own, as both wheel centres have the same x"))
+            placed.guessed.append(("", "each axle has a separate origin, because both wheel centres have the same x"))
     if cogs and "front" in centers:
         (_, point), *more = cogs
         if more:
@@ -118,7 +118,7 @@ def _unit(content: Statements, listed: list[tuple[str, Point]], placed: PlacedPo
                 "write the unit in the header, for example x [mm]"
             )
         guess = fitting[0]
-        placed.guessed.append(("", f"points without a unit: {guess}, as the largest y is {outer:g}"))
+        placed.guessed.append(("", f"points without a unit: {guess}, because the largest y is {outer:g}"))
     factors = {unit: entry.factor for unit in (*stated, guess) if unit and (entry := unit_factor(unit)) is not None}
     largest = max(factors[point.unit or guess] * max(map(abs, point.at)) for _, point in listed)
     if largest > 20.0:
@@ -137,7 +137,7 @@ def _by_axle(content: Statements, listed: list[tuple[str, Point]], scale, placed
         default = "front" if not named else named.pop() if len(named) == 1 else ""
         if not default:
             lost = next(point for _, point in listed if not point.name.axle)
-            raise DataError(f"{lost.where}: {lost.name.text!r} does not say which axle it belongs to; add a column "
+            raise DataError(f"{lost.where}: {lost.name.text!r} names no axle; add a column "
                             "axle, or begin its name with front or rear")  # fmt: skip
         placed.guessed.append(("", f"points that name no axle: {default} axle"))
     groups: dict[str, dict[str, dict[str, tuple[Vector3, Point]]]] = {}
@@ -158,7 +158,7 @@ def _by_axle(content: Statements, listed: list[tuple[str, Point]], scale, placed
     result = {}
     for axle, points in groups.items():
         counts = {side: sum(side in entries for entries in points.values()) for side in ("right", "left", "", "single")}
-        side = max(counts, key=lambda one: counts[one])
+        side = max(counts, key=lambda name: counts[name])
         chosen: Chosen = {}
         for key, entries in points.items():
             name = side if side in entries else next(iter(entries))
@@ -167,7 +167,7 @@ def _by_axle(content: Statements, listed: list[tuple[str, Point]], scale, placed
             at, point = entries[name]
             chosen[key] = ((at[0], -at[1] if turn else at[1], at[2]), point)
             if {"left", "right"} <= set(entries):
-                left, right = (entries[one][0] for one in ("left", "right"))
+                left, right = (entries[end][0] for end in ("left", "right"))
                 apart = max(abs(left[0] - right[0]), abs(left[1] + right[1]), abs(left[2] - right[2]))
                 if apart > MIRRORED:
                     placed.left_out.append((point.where, f"{point.name.text!r}: left and right differ by "
@@ -203,8 +203,8 @@ def _relative(points: Chosen, center: Vector3, axes: Axes) -> AxlePoints:
     for key, (at, point) in points.items():
         y = outward * at[1]
         if y < 0.0 or (y == 0.0 and key != "beam"):
-            raise DataError(f"{point.where}: {point.name.text!r} lies at y = {at[1]:g} m, on the other side of the car "
-                            "than the wheel centre of its axle; correct its sign or its side")  # fmt: skip
+            raise DataError(f"{point.where}: {point.name.text!r} lies at y = {at[1]:g} m, across the middle of the car "
+                            "from its wheel centre; correct its sign or its side")  # fmt: skip
         result.at[key] = (SIGNS[axes.x] * (at[0] - center[0]), y, SIGNS[axes.z] * (at[2] - center[2]))
         result.rows_of_file[key] = (point.where, point.name.text)
     if "tyre_patch" in result.at:

@@ -1,7 +1,7 @@
 """Numbers of a table as numbers of a new car: units, sizes, axles, and what follows from several of them.
 
     sprung and unsprung      m = m_s + m_uf + m_ur,   h = (m_s h_s + m_u r) / m,   x = (m_s x_s + m_ur L) / m
-    moments about the CoG    I = I_s + m_s d_s^2 + sum m_u d_u^2   (wheels as points at their centres)
+    moments about the CoG    I = I_s + m_s d_s^2 + sum m_u d_u^2   (wheels are points at their centres)
     spring at the wheel      K_w = i^2 K_s,   C_w = i_d^2 C_d      (i: spring travel per wheel travel)
     ride rate                K_w = K_r K_t / (K_t - K_r)
     bar                      K_phi = K_w t^2 / 2 + K_bar
@@ -20,14 +20,14 @@ from vehicle.studies.tables.table_numbers import AGREE, AXLES, CarNumbers, Value
 
 @dataclass(slots=True)
 class _Numbers:
-    """Numbers of a table on their way to those of a car."""
+    """Numbers of a table, and the numbers of a car made of them."""
 
     values: Values
     result: CarNumbers
     used: set[tuple[str, str]] = field(default_factory=set)
 
     def get(self, key: str, axle: str = "") -> float | None:
-        """Return a number of an axle, or that of both axles."""
+        """Return a number of an axle, or of both axles."""
         for of_axle in (axle, ""):
             if (entry := self.values.get((key, of_axle))) is not None:
                 self.used.add((key, of_axle))
@@ -35,7 +35,7 @@ class _Numbers:
         return None
 
     def put(self, name: str, value: float, *rows: tuple[str, str], why: str = "") -> None:
-        """Enter a number of the car with the rows that it comes from."""
+        """Enter a number of the car with its rows."""
         self.result.stated[name] = value
         texts = [self.values[row].text for row in dict.fromkeys(rows) if row in self.values]
         self.result.origins[name] = ", ".join([*texts, why] if why else texts)
@@ -84,7 +84,9 @@ def _lengths(table: _Numbers, points: Mapping[str, Any]) -> None:
             table.put(name, stated, (key, axle), (key, ""))
     rear = table.get("tyre_radius", "rear")
     if rear is not None and abs(rear - table.result.stated.get("tyre_radius", rear)) > 1e-3:
-        table.result.left_out.append(("", f"rear tyre radius {rear:g} m: the car has one radius, that of the front"))
+        table.result.left_out.append(
+            ("", f"rear tyre radius {rear:g} m: the car has one radius, taken from the front axle")
+        )
     free = table.get("free_radius", "front") or table.get("free_radius", "rear")
     if free is not None and "tyre_radius" not in table.result.stated:
         row = next(key for key in (("free_radius", "front"), ("free_radius", ""), ("free_radius", "rear"))
@@ -95,7 +97,7 @@ def _lengths(table: _Numbers, points: Mapping[str, Any]) -> None:
 
 
 def _cog_distances(table: _Numbers) -> tuple[float | None, float | None, float | None]:
-    """Return a, b and L: the CoG behind the front axle, before the rear axle, and the wheelbase [m]."""
+    """Return a, b and L: distances of the CoG from front and rear axle, and the wheelbase [m]."""
     a = table.get("cog_x", "front") if ("cog_x", "front") in table.values else table.get("cog_x")
     b = table.values.get(("cog_x", "rear"))
     if b is not None:
@@ -211,7 +213,7 @@ def _inertia(table: _Numbers, mass: float, sprung: float, a: float | None, heigh
         if (value := table.get(name)) is not None:
             table.put(name, value, (name, ""))
             continue
-        if (own := table.get(f"sprung_{name}")) is None:
+        if (moment := table.get(f"sprung_{name}")) is None:
             continue
         needed = ("unsprung_mass_front", "unsprung_mass_rear", "track_front", "track_rear", "wheelbase", "tyre_radius")
         if a is None or height is None or any(key not in stated for key in needed):
@@ -226,7 +228,7 @@ def _inertia(table: _Numbers, mass: float, sprung: float, a: float | None, heigh
         y = front * track_f**2 / 4.0 + rear * track_r**2 / 4.0
         z = (front + rear) * (radius - height) ** 2 + sprung * (above - height) ** 2
         extra = {"roll_inertia": y + z, "pitch_inertia": x + z, "yaw_inertia": x + y}[name]
-        table.put(name, round(own + extra, 3), (f"sprung_{name}", ""), why="with the unsprung masses at the wheels")
+        table.put(name, round(moment + extra, 3), (f"sprung_{name}", ""), why="with the unsprung masses at the wheels")
 
 
 def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
@@ -253,7 +255,7 @@ def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
             table.put(f"spring_stiffness_{axle}", spring, why, ("spring_rate", ""))
         else:
             wheel = spring
-            table.guess(*why, f"{key_words(*why)}: at the wheel (motion ratio 1), as neither a motion ratio nor "
+            table.guess(*why, f"{key_words(*why)}: at the wheel (motion ratio 1); neither a motion ratio nor "
                         "the points of spring and arm are stated")  # fmt: skip
     elif spring is not None and wheel is not None and ratio is None and not at_spring:
         table.result.left_out.append(("", f"{key_words('spring_rate', axle)}: the wheel rate is stated too"))

@@ -1,4 +1,4 @@
-"""Table of a car: what a file states of a car, in the words of the vehicle file, with all guesses and all that is left.
+"""Table of a car in the words of the vehicle file, with guesses and omissions.
 
 hardpoints, masses, CoG, inertia, rates, damper curves, tyres   CSV, text, XLSX
 """
@@ -23,18 +23,18 @@ from vehicle.studies.tables.unit_factor import unit_factor
 
 @dataclass(slots=True)
 class CarTable:
-    """What a file states of a car.
+    """Statements of a file on a car.
 
     Attributes:
         file: name of the file.
         numbers: values by names of `vehicle.studies.design.stated_numbers.StatedNumbers`.
-        points: x behind the wheel centre, y, z above the wheel centre [m], by axle and name in its template.
+        points: x and z from the wheel centre, y [m], by axle and name in its template.
         curves: velocity [m/s] and force [N] of the dampers by axle, extension positive.
         parameters: value and origin by axle and path in its table; "tyre." for its tyres.
         origins: rows behind each number, by name, and behind each point, by axle and name.
         guessed, left_out: sentences, each with its place in the file or "".
         axes: axes of the points in words; "" without points.
-        axles: types of axles in place of those of the template, by axle.
+        axles: types of axles that replace the axles of the template.
         tyre: tyre of a `.tir` file, for its slip stiffness under the load of the car.
     """
 
@@ -58,10 +58,10 @@ class CarTable:
 def car_table(
     paths: Sequence[Path], names: Mapping[str, Collection[str]], types: Mapping[str, Collection[str]] | None = None
 ) -> CarTable:
-    """Read what one or several files state of one car.
+    """Read the statements of one or several files on one car.
 
     Args:
-        paths: files; each may have points in axes of its own.
+        paths: files; the axes of points may differ.
         names: names of the hardpoints and parts of the template by axle, "front" and "rear".
         types: the same of other types of axles, by the names of their templates; one replaces the axle of the template
             where the file has all points of its arms.
@@ -100,8 +100,8 @@ def car_table(
     result.guessed += numbers.guessed
     result.left_out += numbers.left_out
     if not (result.numbers or result.points or result.curves or result.parameters):
-        some = "; ".join(text for _, text in result.left_out[:3])
-        raise DataError(f"{whole.file}: nothing in it is a number or a point of a car{f' ({some})' if some else ''}; "
+        examples = "; ".join(text for _, text in result.left_out[:3])
+        raise DataError(f"{whole.file}: nothing in it is a number or a point of a car{examples and f' ({examples})'}; "
                         "name rows as in docs/howto/table.md")  # fmt: skip
     return result
 
@@ -133,7 +133,7 @@ def _place(content: Statements, radius: Mapping[str, float], track: Mapping[str,
     lengths: dict[str, Any] = {"cog": placed.cog, "wheelbase": placed.wheelbase}
     for axle, points in placed.axles.items():
         if axle in result.points:
-            raise DataError(f"{content.file}: has points of the {axle} axle, as has another file; give each axle once")
+            raise DataError(f"{content.file}: has points of the {axle} axle like another file; give each axle once")
         lengths[f"track_{axle}"] = 2.0 * points.half_track
         if points.radius is not None and lengths.get("tyre_radius") is None:
             lengths["tyre_radius"] = points.radius
@@ -175,22 +175,22 @@ def _without_parts(rows: Sequence[Number], names: Mapping[str, Collection[str]],
         if part:
             result.parameters[axle, f"parts.{part}.mass"] = (row.value * unit.factor, f"{row.name.text} ({row.where})")
         else:
-            why = f"the {axle} axle of the template has no such part" if axle else "does not say which axle"
+            why = f"the {axle} axle of the template has no such part" if axle else "names no axle"
             result.left_out.append((row.where, f"{row.name.text!r} = {row.value:g}: {why}"))
     return others
 
 
 def _use_points(axle: str, placed: PlacedPoints, names: Collection[str], result: CarTable) -> None:
-    """Enter the points of an axle by their names in the template, or say why they do not fit it."""
+    """Enter the points of an axle by their names in the template, or give the reason why they do not fit it."""
     points = placed.axles[axle]
-    own = {key: next((name for name in TEMPLATE_NAMES[key] if name in names), "") for key in points.at}
-    other = sorted({OF_OTHER_AXLES[key] for key, name in own.items() if not name and key in OF_OTHER_AXLES})
+    named = {key: next((name for name in TEMPLATE_NAMES[key] if name in names), "") for key in points.at}
+    other = sorted({OF_OTHER_AXLES[key] for key, name in named.items() if not name and key in OF_OTHER_AXLES})
     if other:
-        result.left_out.append(("", f"points of the {axle} axle but its wheel centre: that of the template has no "
+        result.left_out.append(("", f"points of the {axle} axle but its wheel centre: the template has no "
                                 f"{' and no '.join(other)}; start from a car with such an axle (--from)"))  # fmt: skip
-        own = {key: name if key in ("wheel_center", "tyre_patch") else "" for key, name in own.items()}
+        named = {key: name if key in ("wheel_center", "tyre_patch") else "" for key, name in named.items()}
     used: dict[str, Vector3] = {}
-    for key, name in own.items():
+    for key, name in named.items():
         where, text = points.rows_of_file[key]
         if name:
             used[name] = points.at[key]
@@ -200,12 +200,12 @@ def _use_points(axle: str, placed: PlacedPoints, names: Collection[str], result:
     if {"damper_upper", "damper_lower"} <= set(used) and axle in result.axles and "spring_lower" not in used:
         used |= {"spring_upper": used["damper_upper"], "spring_lower": used["damper_lower"]}
         result.origins |= {(axle, name): "around the damper" for name in ("spring_upper", "spring_lower")}
-        result.guessed.append(("", f"{axle} spring: around the damper, as its seats are not in the file"))
+        result.guessed.append(("", f"{axle} spring: around the damper, because its seats are not in the file"))
     result.points[axle] = used
 
 
 def _has_spring(points: Mapping[str, Vector3]) -> bool:
-    """True if the points of an axle place its spring and the arm that leads the wheel."""
+    """True if the points of an axle contain its spring seats and an arm."""
     seats = "strut_top" in points or {"spring_lower", "spring_upper"} <= set(points)
     return seats and bool({"lower_ball", "pivot"} & set(points))
 
@@ -229,17 +229,17 @@ def _bushings(content: Statements, names: Mapping[str, Collection[str]], result:
         if unit is None or unit.dimension not in (RATE, DAMPING):
             raise DataError(f"{row.where}: bushing {row.name.text!r} with the unit {row.unit or 'nothing'!r}; "
                             "write N/mm or N s/mm in the header, for example kx [N/mm]")  # fmt: skip
-        own = next((name for name in BUSHINGS.get(key or "", ()) if axle and f"bushings.{name}" in names[axle]), "")
-        if not own:
-            why = f"the {axle} axle of the template has no such bushing" if axle else "does not say which axle"
+        named = next((name for name in BUSHINGS.get(key or "", ()) if axle and f"bushings.{name}" in names[axle]), "")
+        if not named:
+            why = f"the {axle} axle of the template has no such bushing" if axle else "names no axle"
             result.left_out.append((row.where, f"bushing {row.name.text!r}: {why}"))
             continue
-        path = f"bushings.{own}.{'stiffness' if unit.dimension == RATE else 'damping'}"
+        path = f"bushings.{named}.{'stiffness' if unit.dimension == RATE else 'damping'}"
         if (axle, path) in result.parameters:
             raise DataError(f"{row.where}: a second bushing {row.name.text!r} of the {axle} axle; remove one")
         result.parameters[axle, path] = ([unit.factor * value for value in row.at], f"{row.name.text} ({row.where})")
     if content.bushings:
-        result.guessed.append(("", "bushings: x, y and z of their table are those of the car"))
+        result.guessed.append(("", "bushings: x, y and z of their table are axes of the car"))
 
 
 def _damper_curves(content: Statements, result: CarTable) -> None:

@@ -38,7 +38,7 @@ class CellTable:
         """Return the number of a cell; None for another text.
 
         Raises:
-            DataError: "1,250" in a file in which nothing else tells whether a comma is a decimal comma.
+            DataError: "1,250" in a file without other numbers that show the meaning of a comma.
         """
         text = text.replace("\u2212", "-").replace("\u00a0", "").strip()
         if _POINTED.fullmatch(text):
@@ -86,7 +86,7 @@ def _text_rows(path: Path) -> list[Row]:
     for number, line in enumerate(lines, 1):
         where = f"{path}:{number}"
         if line.lstrip().startswith(("#", "!", "%", "//")):
-            # A remark may say units and axes, see `remarks`.
+            # A remark may state units and axes.
             cells = [line.strip()]
         elif sign == " ":
             cells = _blank_cells(line)

@@ -64,7 +64,7 @@ NOISE = frozenset({
     "from", "with", "per", "value", "its", "sub", "fixed", "about", "axis", "around", "der", "die", "das", "am",
     "im", "des", "mdl", "model", "ground", "coefficient", "design", "nominal", "static",
 })  # fmt: skip
-"""Words that do not tell one point from another."""
+"""Words without effect on the meaning of a name."""
 
 CORNERS = {"fl": ("front", "left"), "fr": ("front", "right"), "lf": ("front", "left"), "rf": ("front", "right"),
            "rl": ("rear", "left"), "rr": ("rear", "right"), "vl": ("front", "left"), "vr": ("front", "right"),
@@ -92,8 +92,8 @@ class NameWords:
 
     Attributes:
         text: name in the file.
-        words: plain words in order, without axle, side and noise; "front" and "rear" stay where they are a place.
-        axle, side: "front" or "rear", "left", "right" or "single"; "" if the name does not say.
+        terms: plain words in order, without axle, side and noise; "front" and "rear" stay where they are a place.
+        axle, side: "front" or "rear", "left", "right" or "single"; "" if the name has none.
     """
 
     text: str
@@ -102,7 +102,7 @@ class NameWords:
     side: str
 
     def has(self, *terms: str) -> bool:
-        """True if all of some words occur."""
+        """True if all words occur."""
         return set(terms) <= set(self.terms)
 
 
@@ -113,13 +113,13 @@ def words_of(text: str) -> list[str]:
     terms: list[str] = []
     for piece in pieces:
         terms += PLAIN.get(piece, piece).split()
-    for pair, one in _PAIRS:
+    for pair, joined in _PAIRS:
         index = 0
         while index < len(terms) - 1:
             # "center of mass" has a word between.
             gap = 1 + (terms[index + 1] in ("of", "the") and index + 2 < len(terms))
             if (terms[index], terms[index + gap]) == pair:
-                terms[index : index + gap + 1] = [one]
+                terms[index : index + gap + 1] = [joined]
             index += 1
     return terms
 
@@ -130,10 +130,10 @@ def name_words(text: str, *, right_letter: str, where: str = "") -> NameWords:
     Args:
         text: name in the file.
         right_letter: meaning of a single letter "r" in this file: "right", "rear" or "" for unknown.
-        place: place in the file, for messages.
+        where: place in the file, for messages.
 
     Raises:
-        DataError: the name has two places along the car, and does not say which of both is its axle.
+        DataError: the name has two places along the car, one of which may be its axle.
     """
     side = axle = ""
     terms: list[str] = []
@@ -162,7 +162,7 @@ def name_words(text: str, *, right_letter: str, where: str = "") -> NameWords:
     needs = "arm" in terms and not {"outer", "ball", "upper_ball"} & set(terms)
     if len(ends) > 1 and not axle:
         if ends[0] != 0 and len({terms[index] for index in ends}) > 1:
-            raise DataError(f"{where}: {text!r} does not say which of its two places is the axle; begin with the axle")
+            raise DataError(f"{where}: {text!r} has two places, one of which is the axle; begin with the axle")
         axle = terms.pop(ends[0])
     elif len(ends) == 1 and not needs and not axle:
         axle = terms.pop(ends[0])
@@ -171,7 +171,7 @@ def name_words(text: str, *, right_letter: str, where: str = "") -> NameWords:
 
 
 def right_letters(names: Sequence[str]) -> dict[str, str]:
-    """Return by name what a single letter "r" in it means: "right" beside the same name with "l", "rear" with "f".
+    """Return by name what a single letter "r" in it means: "right" if the same name with "l" exists, "rear" with "f".
 
     A name that ends with a single "l" is one of the left side, so "right" too: WC_L, but not L_TRACK.
     """

@@ -1,4 +1,4 @@
-"""Numbers of a car by the words of their names: what a number is, its dimension, and the sizes that cars have."""
+"""Numbers of a car by the words of their names: key, dimension and possible sizes."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ SI = {MASS: "kg", LENGTH: "m", RATE: "N/m", DAMPING: "N s/m", INERTIA: "kg m2", 
 
 GUESSED = {LENGTH: ("m", "mm"), MASS: ("kg",), RATE: ("N/m", "N/mm"), DAMPING: ("N s/m", "N s/mm"),
            INERTIA: ("kg m2",), ROLL_RATE: ("N m/rad", "N m/deg"), FREQUENCY: ("Hz",), NONE: ("-",)}  # fmt: skip
-"""Units that a number without a unit may have; one of them must give a possible size, and only one."""
+"""Units that a number without a unit may have; exactly one must give a possible size."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -28,8 +28,8 @@ class Quantity:
     """Number of a car.
 
     Attributes:
-        words: words that its name has, one set of several.
-        optional: words that its name may have.
+        terms: sets of words, one of which its name has.
+        optional: further words of its name.
         dimension: powers of kg, m, s, rad.
         sizes: least and largest size of cars [SI units].
         of_axle: False for the whole car, True for an axle, None for both.

@@ -34,7 +34,7 @@ OF_OTHER_AXLES = {
     "lower_arm_rear": "lower arm",
     "trailing_pivot": "trailing arm",
 }
-"""Points that only some axles have, and what they belong to: without a place for them the axle is of another type."""
+"""Points that only some types of axles have, by the part that they belong to."""
 
 
 OF_BODY = {"body", "chassis", "frame", "subframe"}
@@ -43,9 +43,9 @@ OF_BODY = {"body", "chassis", "frame", "subframe"}
 
 def point_of(name: NameWords) -> str | None:
     """Return the point that a name means, a key of `TEMPLATE_NAMES`, "cog", or None."""
-    own = name.text.strip().lower()
+    plain = name.text.strip().lower()
     for key, names in TEMPLATE_NAMES.items():
-        if own in (key, *names):
+        if plain in (key, *names):
             return key
     terms, has = set(name.terms) - OF_BODY, name.has
     lower, upper = bool(terms & {"lower", "bottom"}), bool(terms & {"upper", "top"})
@@ -85,7 +85,7 @@ def point_of(name: NameWords) -> str | None:
             return "strut_bottom"
         return "strut_top" if upper or terms in ({"strut"}, {"strut", "inner"}) else None
     if lower == upper:
-        # An arm without "lower" is the only one of its axle.
+        # The only arm of an axle needs no "lower".
         if "arm" not in terms or upper:
             return None
         lower = True

@@ -2,8 +2,8 @@
 
     r_child = r + R(rpy) ...,  m = sum m_i,  m c = sum m_i c_i,  I = sum (R I_i R' + m_i (|d_i|^2 1 - d_i d_i'))
 
-Links with "wheel" in their name are the wheels; the unsprung masses are those of the wheels and of the links that lead
-only to one of them. Frame of URDF: x forward, y left, z up, SI units (ROS REP 103).
+Links with "wheel" in their name are the wheels; the unsprung masses are the wheels and the links that lead only
+to one of them. Frame of URDF: x forward, y left, z up, SI units (ROS REP 103).
 
 Source: specification of URDF (ROS), elements link, inertial, joint.
 """
@@ -111,7 +111,7 @@ def _statements(path: Path, links: dict[str, _Link]) -> Statements:
 
 
 def _unsprung(links: dict[str, _Link], wheel: str, wheels: list[str]) -> float:
-    """Return the mass of a wheel and of the links between it and the next one that leads elsewhere too."""
+    """Return the mass of a wheel and of the links that lead only to it."""
     mass, name = links[wheel].mass, links[wheel].parent
     while name and links[name].parent and sum(link.parent == name for link in links.values()) == 1:
         mass += links[name].mass
@@ -142,8 +142,8 @@ def _link(path: Path, link: ElementTree.Element) -> _Link:
         element = inertial.find("inertia")
         xx, xy, xz, yy, yz, zz = (_values(path, element, key, missing="0")[0]
                                   for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))  # fmt: skip
-        own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        inertia = turn @ own @ turn.T
+        moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        inertia = turn @ moments @ turn.T
         if mass < 0.0 or np.linalg.eigvalsh(inertia).min() < -1e-9:
             raise DataError(f"{path}: link {link.get('name')!r} has a negative mass or moment of inertia; correct it")
     shapes = link.findall(".//cylinder") + link.findall(".//sphere")

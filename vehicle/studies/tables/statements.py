@@ -37,7 +37,7 @@ class Number:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Curve:
-    """Block of two columns, as of a damper: axle ("" if none is stated), velocities and forces with their units."""
+    """Block of two columns of a damper: axle ("" if none is stated), velocities and forces with their units."""
 
     where: str
     axle: str
@@ -47,7 +47,7 @@ class Curve:
 
 @dataclass(slots=True)
 class Statements:
-    """Everything that a file states, in its order.
+    """Statements of a file, in its order.
 
     Attributes:
         file: name of the file.
@@ -97,7 +97,7 @@ def _triples(columns: Mapping[str, int]) -> list[str]:
 
 
 def name_and_unit(cell: str) -> tuple[str, str]:
-    """Return the name of a header and its unit, as in "x [mm]", "mass (kg)", "track, m", "x_mm"; "" for no unit."""
+    """Return the name of a header and its unit such as "x [mm]", "mass (kg)", "track, m", "x_mm"; "" for no unit."""
     match = _UNIT_AT_END.fullmatch(cell.strip())
     if match is None:
         return cell.strip(), ""
@@ -264,7 +264,7 @@ class _Reader:
         if at < 0 or at >= len(row.cells) or not row.cells[at]:
             raise DataError(f"{row.where}: {', '.join(filter(None, row.cells))} has no name; name each row of numbers")
         if heads is not None and len(heads.names) > 1:
-            # A symbol and its description: the first one that is listed.
+            # A symbol and its description: the first that is known.
             others = [index for index in heads.names if index < len(row.cells) and row.cells[index]]
             at = next((index for index in others if number_of(self._name(row, name_and_unit(row.cells[index])[0]))), at)
         text, unit = name_and_unit(row.cells[at])
@@ -295,7 +295,7 @@ class _Reader:
             return True
         index, value = after[0]
         if index + 1 < len(row.cells) and unit_factor(row.cells[index + 1].strip("()[]")) is not None:
-            # "sprung mass (ms), 1250, kg": the cell behind the value takes precedence.
+            # "sprung mass (ms), 1250, kg": the cell after the value takes precedence.
             unit = row.cells[index + 1]
         self._add_number(row, self._name(row, text), value, unit)
         return True

@@ -37,7 +37,7 @@ READ = "CSV, text, XLSX, .adm, .cmd, .urdf, .tir"
 
 
 def file_statements(path: Path) -> Statements:
-    """Read what a file states of a car.
+    """Read the statements of a file on a car.
 
     Raises:
         ConfigurationError: the file is missing, or of a kind that is not read.

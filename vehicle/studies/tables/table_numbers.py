@@ -17,7 +17,7 @@ GRAVITY = 9.81
 """Acceleration of gravity that turns a wheel load in N into kg [m/s2]."""
 
 ONE_WHEEL, WHOLE_AXLE = 55.0, 75.0
-"""Unsprung mass without a word [kg]: up to the first that of a wheel, from the second on that of an axle."""
+"""Unsprung mass without a word [kg]: up to the first of a wheel, from the second on of an axle."""
 
 AGREE = 0.01
 """Relative difference of two statements of one number that is round-off."""
@@ -133,9 +133,9 @@ def _si(row: Number, key: str, result: CarNumbers) -> float:
 
 
 def _by_the_sum(content: Statements) -> bool | None:
-    """Return whether unsprung masses are those of a wheel, by the mass of the car and that of its body; None: unknown.
+    """Return whether unsprung masses are of a wheel, by the masses of car and body; None: unknown.
 
-    m = m_s + m_uf + m_ur with masses of axles, m = m_s + 2 m_uf + 2 m_ur with those of wheels.
+    m = m_s + m_uf + m_ur with masses of axles, m = m_s + 2 m_uf + 2 m_ur with masses of wheels.
     """
     masses: dict[str, list[float]] = {}
     for row in content.numbers:
@@ -157,7 +157,7 @@ def _by_the_sum(content: Statements) -> bool | None:
 
 
 def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_sum: bool | None) -> Stated:
-    """Return masses of an axle from those of a wheel; `by_the_sum`: see `_by_the_sum`."""
+    """Return masses of an axle from masses of a wheel; `by_the_sum`: see `_by_the_sum`."""
     if key not in ("unsprung_mass", "axle_load", "sprung_mass") or row.name.side in ("left", "right"):
         return value
     terms, axle = set(row.name.terms) | set(row.unit.lower().split()), row.name.axle
@@ -178,12 +178,12 @@ def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_su
 
 
 def _both_sides(key: str, axle: str, sides: Mapping[str, Stated], result: CarNumbers) -> Stated:
-    """Return the number of an axle from those of its two wheels: the sum of masses, the mean of all others."""
+    """Return the number of an axle from its two wheels: the sum of masses, the mean of all others."""
     if set(sides) != {"left", "right"}:
-        (one,) = sides.values()
-        result.guessed.append((one.where, f"{one.text}: the same on the other side"))
+        (single,) = sides.values()
+        result.guessed.append((single.where, f"{single.text}: the same on the other side"))
         factor = 2.0 if key in ("axle_load", "unsprung_mass", "sprung_mass") else 1.0
-        return Stated(value=factor * one.value, where=one.where, text=one.text)
+        return Stated(value=factor * single.value, where=single.where, text=single.text)
     left, right = sides["left"], sides["right"]
     if abs(left.value - right.value) > AGREE * abs(left.value):
         result.left_out.append((left.where, f"difference of {left.text} and {right.text}: the car is symmetric"))

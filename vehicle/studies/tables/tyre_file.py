@@ -34,7 +34,7 @@ USED = frozenset({
     "VERTICAL_STIFFNESS", "VERTICAL_DAMPING", "LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS", "INFLPRES", "NOMPRES",
     "PFZ1",
 })  # fmt: skip
-"""Coefficients that count here."""
+"""Coefficients that are used."""
 
 BLOCKS = ("COEFFICIENTS", "VERTICAL", "STRUCTURAL", "OVERTURNING", "ROLLING", "ALIGNING", "LATERAL", "LONGITUDINAL",
           "TURNSLIP", "CONTACT_PATCH", "DEFLECTION", "BOTTOMING", "DIMENSION")  # fmt: skip
@@ -49,7 +49,7 @@ class TyreFile:
         file: name of the file.
         model: name of the model.
         coefficients: numbers by name in upper case.
-        unused: names of coefficients other than zero that do not count here, by block.
+        unused: names of unused coefficients that are not zero, by block.
     """
 
     file: str
@@ -99,7 +99,7 @@ class TyreFile:
         return load * by_load * self["UNLOADED_RADIUS"] / (self["LFZO"] * self.nominal_load) * self["LTR"]
 
     def carcass(self) -> tuple[float | None, float | None]:
-        """Return the stiffness of the carcass along and across [N/m]; None where the file has none."""
+        """Return the stiffness of the carcass along and across [N/m]; None if missing."""
         if self.fit in NEWER:
             return self["LONGITUDINAL_STIFFNESS"] or None, self["LATERAL_STIFFNESS"] or None
         load, radius = self.nominal_load, self["UNLOADED_RADIUS"]
@@ -157,7 +157,7 @@ OTHER_MODELS = ("PAC89", "PAC94", "FIALA", "UA", "FTIRE", "CTIRE", "5.2.1", "PAC
 
 
 def _coefficients(content: PropertyFile) -> tuple[dict[str, float], dict[str, list[str]]]:
-    """Return the coefficients that count in SI units, and the names of the others by block."""
+    """Return the coefficients that count in SI units, and names of unused coefficients by block."""
     length, force, time = (content.unit(name) for name in ("LENGTH", "FORCE", "TIME"))
     units = {"UNLOADED_RADIUS": length, "FNOMIN": force, "VERTICAL_STIFFNESS": force / length,
              "VERTICAL_DAMPING": force * time / length, "LONGITUDINAL_STIFFNESS": force / length,

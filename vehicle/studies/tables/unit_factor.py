@@ -47,10 +47,10 @@ class Factor:
 
 
 def unit_factor(text: str, expected: Dimension | None = None) -> Factor | None:
-    """Return powers and factor of a unit; None for a text that is no unit.
+    """Return powers and factor of a unit; None for other texts.
 
     A slash divides by all that follows up to the next one, so N/(m/s) and N s/m are equal. A pound is a force where
-    only this gives the expected dimension, as in lb/in.
+    only this gives the expected dimension: lb/in.
 
     Args:
         text: unit, for example "N/mm".
