@@ -6,6 +6,7 @@ import openpyxl
 import pytest
 
 from vehicle.commands.new import main
+from vehicle.engines.kinematics.axle_ride import axle_ride
 from vehicle.errors import VehicleError
 from vehicle.runs.car import Car
 from vehicle.studies.design.axle_types import AXLE_TYPES, axle_type_names
@@ -115,6 +116,26 @@ def test_both_axles_of_one_sheet_each_with_numbers_and_a_damper(tmp_path):
     assert any("no lower arm" in text for _, text in table.left_out)
     result = new_car("mine", "sedan", stated_numbers(None, {}, table.numbers), table)
     assert result.car.vehicle.table["front"]["damper"]["force"] == [-1200.0, -300.0, 500.0, 2500.0]
+
+
+def test_a_title_in_the_head_of_the_names_names_axle_and_unit(tmp_path):
+    text = "FRONT SUSPENSION (mm),X,Y,Z\n" + rows(WORDS["plain"])
+    text += "REAR SUSPENSION (mm),X,Y,Z\n" + rows(WORDS["plain"], origin=(4.1, 0.0, 0.3))
+    table = read(tmp_path, text, name="car.csv")
+    require_points(table)
+    assert table.numbers["wheelbase"] == pytest.approx(2.7) and not table.guessed
+
+
+def test_other_axles_keep_the_ride_frequencies_of_the_template(tmp_path):
+    """The lever of the spring of a double wishbone is shorter; the spring is stiffer for it."""
+    arms = "\n".join(("lower arm rear,250,320,-80", "lower arm front,-150,320,-94", "lower ball joint,-13,737,-145",
+                      "upper arm rear,105,435,196", "upper arm front,-122,435,230", "upper ball joint,25,680,162",
+                      "wheel centre,0,757.5,0"))  # fmt: skip
+    table = read(tmp_path, f"name,x [mm],y [mm],z [mm]\n{arms}\n")
+    car = new_car("mine", "sedan", stated_numbers(None, {}, table.numbers), table).car
+    rides = (axle_ride(one.model, "front", roll=False) for one in (car, Car.load("sedan")))
+    new, old = (ride.ride_frequency for ride in rides)
+    assert new == pytest.approx(old, rel=1e-3)
 
 
 def test_double_wishbones_replace_the_axle_of_the_template(tmp_path):

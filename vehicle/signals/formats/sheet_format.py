@@ -72,7 +72,7 @@ def read_sheet_texts(path: Path) -> list[list[str]]:
 
 
 def sheet_texts(path: Path, *, first: bool = False) -> dict[str, list[tuple[str, ...]]]:
-    """Read the cells of all sheets, or of the first, as texts by the title of the sheet, numbers with all digits."""
+    """Read the texts of the cells of all sheets, or of the first, by sheet title, numbers with all digits."""
     sheets = dict(list(_sheets(path).items())[: 1 if first else None])
     for title in sheets:
         if _formulas(path, title):

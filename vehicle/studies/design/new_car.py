@@ -100,6 +100,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, points: CarTab
     stated = with_tyre_size(stated, template, ratio)
     engine = powertrain(stated.car_class)
     template = template.with_powertrain(engine)
+    source_car = template
     if points is not None:
         template = with_axles(template, points.axles)
     table, sources = moved_points(template, stated)
@@ -120,7 +121,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, points: CarTab
     if stated.load:
         table["load"] = dict(stated.load)
         sources |= {f"load.{load}": "given" for load in stated.load}
-    targets = targets_of(template, stated, () if points is None else tuple(points.curves))
+    targets = targets_of(template, stated, () if points is None else tuple(points.curves), source_car)
     # The step of the template is short enough for the template; without it each car gets its own.
     solver = {key: value for key, value in table.get("solver", {}).items() if key != "timestep"}
     table = solved({**table, "name": name, "solver": solver}, template, targets)

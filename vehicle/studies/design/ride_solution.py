@@ -113,14 +113,18 @@ def new_car_of(table: Mapping[str, Any], template: TemplateCar) -> Car:
     return Car(vehicle_of(table, template.file.parent), folder=template.file.parent)
 
 
-def targets_of(template: TemplateCar, stated: StatedNumbers, curves: Collection[str] = ()) -> list[Target]:
+def targets_of(
+    template: TemplateCar, stated: StatedNumbers, curves: Collection[str] = (), source: TemplateCar | None = None
+) -> list[Target]:
     """Return the targets: the stated quantities, by default ride frequencies and damping ratios of the template.
 
     Args:
         template, stated: template and stated numbers.
         curves: axles whose dampers have a curve of a table.
+        source: template with its own axles, whose ride frequencies and damping ratios are kept; None for `template`.
     """
-    template_values = quantities(new_car_of(template.table, template), template)
+    source = source or template
+    template_values = quantities(new_car_of(source.table, source), source)
     targets = []
     for word in AXLES:
         for name, paths in _parameters(template, word).items():

@@ -239,6 +239,11 @@ class _Reader:
         if "name" not in columns:
             free = [index for index in range(len(row.cells)) if index not in {*columns.values(), *axles}]
             columns["name"] = free[0] if free else 0
+        # "Front suspension (mm), X, Y, Z": the head of the names is a title.
+        title, unit = name_and_unit(row.cells[columns["name"]])
+        if {*words_of(title)} & set(AXLES):
+            self._title(title)
+        self.unit = unit or self.unit
         self.heads = _Heads(columns=columns, units=units, axles=axles, width=len(row.cells), names=names)
         return True
 
