@@ -2,7 +2,7 @@
 
 import math
 
-import openpyxl
+import openpyxl  # type: ignore[import-untyped]
 import pytest
 
 from vehicle.commands.new import main
@@ -104,8 +104,9 @@ def test_both_axles_of_one_sheet_each_with_numbers_and_a_damper(tmp_path):
             sheet.append([word, 1e3 * at[0] + shift, -1e3 * at[1], 1e3 * at[2] + 300.0])
     for row in (["Parameter", "Value", "Unit"], ["Curb weight", 1500, "kg"], ["Front axle load", 820, "kg"]):
         sheets[2].append(row)
-    for row in (["velocity [mm/s]", "force [N]"], [-1000, -1200], [-100, -300], [100, 500], [1000, 2500]):
-        sheets[3].append(row)
+    sheets[3].append(["velocity [mm/s]", "force [N]"])
+    for point in ([-1000, -1200], [-100, -300], [100, 500], [1000, 2500]):
+        sheets[3].append(point)
     book.save(tmp_path / "car.xlsx")
     table = car_table([tmp_path / "car.xlsx"], NAMES, TYPES)
     require_points(table)

@@ -57,6 +57,7 @@ def test_slip_stiffness_of_a_tyre_file_is_the_slope_of_its_force(load, tmp_path)
 def test_relaxation_lengths_of_a_tyre_file_are_stiffness_over_carcass(tmp_path):
     tyre = read_tyre_file(written(tmp_path, "a.tir", TIR_52))
     along, across = tyre.carcass()
+    assert along is not None and across is not None
     assert tyre.longitudinal(4000.0) / along == pytest.approx(2.0 * 0.3135, rel=1e-12)
     sigma = 2.3 * math.sin(2.0 * math.atan(1.0 / 1.9)) * 0.3135
     assert tyre.lateral(4000.0) / across == pytest.approx(sigma, rel=1e-12)
