@@ -84,7 +84,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, points: CarTab
         name: name of the new car.
         source: template: name of a shipped car, or a vehicle file.
         stated: numbers of the new car; all others are those of its class or of the template, or estimated.
-        points: table of the car with points of its axles, curves and numbers of parts; None without one.
+        points: table of the car with points, curves and numbers of parts.
 
     Returns:
         The car, whose numbers are met within `LOADS_MET` and `FREQUENCIES_MET`.

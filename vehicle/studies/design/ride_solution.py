@@ -121,7 +121,7 @@ def targets_of(
     Args:
         template, stated: template and stated numbers.
         curves: axles whose dampers have a curve of a table.
-        source: template with its own axles, whose ride frequencies and damping ratios are kept; None for `template`.
+        source: template before its axles were replaced, which gives the kept values; default: `template`.
     """
     source = source or template
     template_values = quantities(new_car_of(source.table, source), source)

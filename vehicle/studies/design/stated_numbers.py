@@ -217,8 +217,7 @@ def stated_numbers(
     Args:
         file: TOML file with the names of `StatedNumbers` and tables [load.NAME]; None without a file.
         more: numbers by name, which may be None.
-        of_table: numbers of a table of the car; those of the file and of the command line replace them, also where
-            they set the same part under another name.
+        of_table: numbers of a table of the car, which typed numbers replace, also where both set the same part.
     """
     table = {} if file is None else read_table(file)
     for name in ("damper_curve_front", "damper_curve_rear"):

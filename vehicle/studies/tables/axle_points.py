@@ -199,11 +199,11 @@ def _relative(points: Chosen, center: Vector3, axes: Axes) -> AxlePoints:
     result = AxlePoints(half_track=abs(center[1]))
     outward = 1.0 if center[1] > 0.0 else -1.0
     if center[1] == 0.0:
-        raise DataError("the wheel centre lies in the middle of the car (y = 0); give its half track as y")
+        raise DataError("the wheel centre has y = 0; state half the track as y")
     for key, (at, point) in points.items():
         y = outward * at[1]
         if y < 0.0 or (y == 0.0 and key != "beam"):
-            raise DataError(f"{point.where}: {point.name.text!r} lies at y = {at[1]:g} m, across the middle of the car "
+            raise DataError(f"{point.where}: {point.name.text!r} lies at y = {at[1]:g} m, across the middle "
                             "from its wheel centre; correct its sign or its side")  # fmt: skip
         result.at[key] = (SIGNS[axes.x] * (at[0] - center[0]), y, SIGNS[axes.z] * (at[2] - center[2]))
         result.rows_of_file[key] = (point.where, point.name.text)

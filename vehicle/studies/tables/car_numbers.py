@@ -35,7 +35,7 @@ class _Numbers:
         return None
 
     def put(self, name: str, value: float, *rows: tuple[str, str], why: str = "") -> None:
-        """Enter a number of the car with its rows."""
+        """Store a number of the car with its rows."""
         self.result.stated[name] = value
         texts = [self.values[row].text for row in dict.fromkeys(rows) if row in self.values]
         self.result.origins[name] = ", ".join([*texts, why] if why else texts)
@@ -48,7 +48,7 @@ class _Numbers:
 def car_numbers(
     values: Values, result: CarNumbers, points: Mapping[str, Any], spring_points: Mapping[str, bool]
 ) -> None:
-    """Enter the numbers of a new car.
+    """Compute the numbers of a new car.
 
     Args:
         values: numbers of the table.

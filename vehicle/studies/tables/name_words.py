@@ -152,7 +152,7 @@ def name_words(text: str, *, right_letter: str, where: str = "") -> NameWords:
         side = "right"
         terms.remove("right")
     ends = [index for index, word in enumerate(terms) if word in AXLES]
-    # "front axle": the axle, wherever it stands.
+    # "front axle" names the axle at any place.
     for index in ends:
         if terms[index + 1 : index + 2] in (["axle"], ["suspension"]):
             axle = terms[index]

@@ -140,7 +140,7 @@ SYMBOLS: dict[str, tuple[str, str]] = {
 
 
 def number_of(name: NameWords) -> tuple[str, str, bool] | None:
-    """Return key and axle of a number, and whether its name is a symbol; None for an unknown name."""
+    """Return key and axle of a number, and whether its name is a symbol; None if unknown."""
     symbol = "".join(letter for letter in name.text.lower() if letter.isalnum())
     # A small l is the length of the car in CommonRoad.
     if symbol in SYMBOLS and name.text != "l":

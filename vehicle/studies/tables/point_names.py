@@ -34,7 +34,7 @@ OF_OTHER_AXLES = {
     "lower_arm_rear": "lower arm",
     "trailing_pivot": "trailing arm",
 }
-"""Points that only some types of axles have, by the part that they belong to."""
+"""Points of arms, by the arm: an axle without a name for them is of another type."""
 
 
 OF_BODY = {"body", "chassis", "frame", "subframe"}
