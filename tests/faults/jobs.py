@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.faults.commands import DOOR, Written, writing_alone
+from tests.model.flexbody.hung_body import HungBody, write_test
 from tests.model.flexbody.modal_test import write_modes
 from vehicle.__main__ import main
 from vehicle.commands import COMMANDS, module_of
@@ -21,7 +22,7 @@ READ = {
     "--input", "--road", "--dbc", "--vehicle", "--set", "--controller", "--measured", "--vary", "--table", "--profile",
     "--mass", "--dofs", "--nodes", "--residual", "--point-nodes", "--design", "--target", "--beside", "--tolerance",
     "--parameters", "--frf", "--record", "--signal", "--rival", "--numbers", "--damper-curve-front",
-    "--damper-curve-rear", "--channel", "--map", "--unit", "--cases", "--targets", "--cost",
+    "--damper-curve-rear", "--channel", "--map", "--unit", "--points", "--cases", "--targets", "--cost",
 }  # fmt: skip
 """Options with a file, or with a text of its own, that is read."""
 
@@ -117,6 +118,7 @@ def commands(inputs: Path) -> list[Written]:
     bodies = inputs / "body1.uff", inputs / "body2.uff"
     for body, speed in zip(bodies, (1.0, 1.1), strict=True):
         write_modes(body, speed=speed)
+    hung = [write_test(inputs / f"hung{seed}.uff", HungBody(seed=seed), np.arange(8.0, 75.0, 2.0)) for seed in (1, 2)]
     shipped = FOCUS_FILE.with_name("trimmed_body.toml")
     others = shipped_copies(inputs, shipped, "frequency_hz = 19.0", "frequency_hz = 19.1")
     designs = shipped_copies(inputs, FOCUS_FILE.with_name("body_design.toml"), "ratio = 0.03", "ratio = 0.02")
@@ -174,6 +176,7 @@ def commands(inputs: Path) -> list[Written]:
         job("fit-damper", ["fit-damper", "--output", "a"], [str(dampers[0])], [str(dampers[1])]),
         job("body import", ["body", "import", "--output", "a.toml"], [str(bodies[0])], [str(bodies[1])]),
         job("body build", ["body", "build", "--output", "a.npz", "--design"], [designs[0]], [designs[1]]),
+        job("body rigid", ["body", "rigid", "--output", "a.toml"], [str(hung[0])], [str(hung[1])]),
         job("body show", ["body", "show", "--output", "a"], [others[0]], [others[1]]),
         job("body compare", ["body", "compare", "--output", "a", str(shipped)], [others[0]], [others[1]]),
         job("body participation", ["body", "participation", "--output", "a", "--damper"], ["stuck"], ["sliding"]),
