@@ -105,6 +105,11 @@ def commands(inputs: Path) -> list[Written]:
     first, second = signal_file(inputs / "first.csv", 3.0), signal_file(inputs / "second.csv", 4.0)
     mounts = mount_file(inputs / "mount1.csv", 200.0), mount_file(inputs / "mount2.csv", 300.0)
     dampers = damper_file(inputs / "damper1.csv", 1200.0), damper_file(inputs / "damper2.csv", 1500.0)
+    tables = inputs / "car1.csv", inputs / "car2.csv"
+    for path, mass in zip(tables, (1450, 1500), strict=True):
+        path.write_text(f"mass,{mass},kg\nfront wheel centre x,0,mm\nfront wheel centre y,750,mm\n"
+                        "front wheel centre z,300,mm\nfront strut top x,40,mm\nfront strut top y,571,mm\n"
+                        "front strut top z,765,mm\naxes: Adams\n")  # fmt: skip
     runs = inputs / "run1", inputs / "run2"
     for run, source in zip(runs, (first, second), strict=True):
         if not run.exists():
@@ -161,6 +166,7 @@ def commands(inputs: Path) -> list[Written]:
         job("drive", ["drive", *channel, "--output", "a", "--target"], [histories[0]], [histories[1]]),
         job("tune", ["tune", "focus", *fitted, "--output", "a", "--record"], [histories[0]], [histories[1]]),
         job("new", new, ["1450"], ["1500"]),
+        job("new --table", ["new", "a", "--table"], [str(tables[0])], [str(tables[1])]),
         changed("mjcf", "mjcf", "--output", "a"),
         changed("show", "show", "--output", "a"),
         changed("levels", "levels", "focus", "--frequency", "3,8", "--level", "0.1,1", "--output", "a"),
