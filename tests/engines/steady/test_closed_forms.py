@@ -25,8 +25,9 @@ STIFFNESS, MASS = 2e4, 50.0
 
 def states(model, dampers, frequency, level, channels, **more):
     return level_states(
-        model, dampers, tyre_load={"fr": 1e6, "fl": 1e6}, loads=NO_LOADS, plates=np.array([1.0, 0.0]),
-        frequency=np.atleast_1d(frequency), level=np.atleast_1d(level), channels=channels, **more,
+        model, dampers, tyre_load={"fr": 1e6, "fl": 1e6}, loads=NO_LOADS,
+        shares=np.tile([1.0, 0.0], (np.size(frequency), 1)), frequency=np.atleast_1d(frequency),
+        level=np.atleast_1d(level), channels=channels, **more,
     )  # fmt: skip
 
 
@@ -54,7 +55,7 @@ def test_den_hartog(ratio, samples):
     speed = ratio * np.sqrt(STIFFNESS / MASS)
     table = plant.responses(speed * cycle.harmonics)
     drive = np.zeros((1, 1, len(cycle.harmonics)), dtype=complex)
-    drive[0, 0, 0] = level * table.plates[0, 0, 0]
+    drive[0, 0, 0] = level * table.inputs[0, 0, 0]
     scaling = ports.ports[0].scaling(np.abs(table.forces[:1, 0, 0]))[None]
     found = periodic_forces(ports.ports, cycle, table.forces[None], drive, scaling, tolerance=1e-5)
     assert found.ended.all()

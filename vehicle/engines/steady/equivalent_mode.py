@@ -15,22 +15,26 @@ ACCURACY = 1e-9
 """Last Newton step over the size of a pole."""
 
 
-def strongest(model: PoleModel, damping: Vector, row: Complex, plates: Complex, frequency: float) -> complex:
-    """Return the pole with the largest part of the response of an output to the plates near a frequency [rad/s].
+def strongest(model: PoleModel, damping: Vector, row: Complex, shares: Complex, frequency: float) -> complex:
+    """Return the pole with the largest part of the response of an output to the inputs near a frequency [rad/s].
 
     Args:
         model: pole model.
         damping: damping constants c [N s/m]; (d,).
         row: row of the output over the stored poles; (p,).
-        plates: share of each plate; (w,).
+        shares: amplitude of each plate, or of each applied force of a model with forces; (i,).
         frequency: frequency [Hz].
     """
     matrix, effects, rows = _parts(model)
     values, vectors = np.linalg.eig(matrix - (effects * (damping - model.matrices.viscous)) @ rows)
     s, pairs = 2j * np.pi * frequency, model.pairs
-    residue = (model.height + s * model.velocity) @ plates
-    # The residue of a conjugate pole is the conjugate residue; both poles have the same plates.
-    inputs = np.concatenate([residue, ((model.height + s * model.velocity).conj()[:pairs] @ plates)])
+    # The residue of a conjugate pole is the conjugate residue; both poles have the same inputs.
+    forced = model.applied.shape[1]
+    residue, conjugate = (
+        (model.applied if forced else model.height + s * model.velocity) @ shares,
+        (model.applied.conj() if forced else model.height.conj() + s * model.velocity.conj())[:pairs] @ shares,
+    )
+    inputs = np.concatenate([residue, conjugate])
     half = np.concatenate([0.5 * row[:pairs], row[pairs:], 0.5 * row[:pairs].conj()])
     inputs[pairs : len(residue)] = residue[pairs:].real
     part = (half @ vectors) * np.linalg.solve(vectors, inputs) / (s - values)
