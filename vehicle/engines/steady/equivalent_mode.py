@@ -55,9 +55,11 @@ def followed(model: PoleModel, pole: complex, first: Vector, last: Vector) -> co
         first, last: damping constants [N s/m]; (d,) each.
     """
     matrix, effects, rows = _parts(model)
-    poles, viscous = np.diag(matrix), model.matrices.viscous
+    poles = np.diag(matrix)
+    # A damper without friction has its least slope at all levels, within round-off.
+    begin, end = (np.maximum(damping - model.matrices.viscous, 0.0) for damping in (first, last))
     for share in np.arange(1, STEPS + 1) / STEPS:
-        more = (first - viscous) ** (1.0 - share) * (last - viscous) ** share
+        more = begin ** (1.0 - share) * end**share
         for _ in range(NEWTON):
             factor = 1.0 / (pole - poles)
             table = (rows * factor) @ effects * more

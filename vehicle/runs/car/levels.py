@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from vehicle.arrays import Mask, Vector
 from vehicle.digits import beside_limit, number
+from vehicle.drawing.rendering.level_plot import peaks_of
 from vehicle.engines.linear.load_rows import load_rows
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.validity import LARGEST_ANGLE
@@ -109,6 +110,19 @@ class LevelMap(LevelStates):
             if np.isfinite(values).all() and 0 < (top := int(np.argmax(values))) < len(values) - 1:
                 result[:, column] = _vertex(self.frequency[inside[top - 1 : top + 2]], values[top - 1 : top + 2])
         return result[0], result[1]
+
+    def falling_peak(self, low: float = 0.0, high: float = np.inf) -> float:
+        """Return the frequency of the peak of the first channel that falls most from the lowest to the highest level.
+
+        Args:
+            low, high: band of the peak at the lowest level [Hz].
+        """
+        frequency, size = self.frequency, np.nan_to_num(np.abs(self.frf[0]), nan=1e-30)
+        inside = (frequency >= low) & (frequency <= high)
+        if chosen := [index for index in peaks_of(size[:, 0]) if inside[index]]:
+            fall = size[:, 0] / size[:, -1]
+            return float(frequency[max(chosen, key=lambda index: float(fall[index]))])
+        return float(frequency[int(np.argmax(np.where(inside, size[:, 0], -1.0)))])
 
     def mode(self, near: float, channel: str | None = None) -> tuple[Vector, Vector]:
         """Return frequency [Hz] and damping ratio [-] of a mode at each level; (l,) each.

@@ -12,7 +12,7 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
-from vehicle.drawing.rendering.level_plot import LevelPicture, peaks_of, plot_level_damping, plot_level_map
+from vehicle.drawing.rendering.level_plot import LevelPicture, plot_level_damping, plot_level_map
 from vehicle.names import channel_words, side_of
 from vehicle.runs.car.levels import LevelMap
 from vehicle.runs.output.folder import output_folder, write_files, write_json
@@ -42,15 +42,8 @@ class LevelReport:
 
     @cached_property
     def near(self) -> float:
-        """Return the frequency of the peak at the lowest level that falls most up to the highest, in the band [Hz]."""
-        low, high = self.band or (0.0, np.inf)
-        frequency, size = self.states.frequency, np.nan_to_num(np.abs(self.states.frf[0]), nan=1e-30)
-        inside = (frequency >= low) & (frequency <= high)
-        fall = np.where(inside, size[:, 0] / size[:, -1], -1.0)
-        summit = peaks_of(size[:, 0])
-        if chosen := [index for index in summit if inside[index]]:
-            return float(frequency[max(chosen, key=lambda index: float(fall[index]))])
-        return float(frequency[int(np.argmax(np.where(inside, size[:, 0], -1.0)))])
+        """Return the frequency of the peak, see `LevelMap.falling_peak` [Hz]."""
+        return self.states.falling_peak(*(self.band or (0.0, np.inf)))
 
     @property
     def around(self) -> tuple[float, float]:
