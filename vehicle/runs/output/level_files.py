@@ -293,18 +293,33 @@ def printed(report: LevelReport, folder: Path | None, files: Sequence[str]) -> s
         f"results: {states.ended.size - left} of {states.ended.size} points, {number(states.iterations.mean(), 2)} "
         f"iterations each; {report.proof()}",
     ]
-    for name, (level, at) in report.first_slip().items():
-        lines.append(f"{report.words(name)}: slips first at {number(at)} Hz, from {number(level)} {shown} on")
+    heads, table = peak_table(report)
+    lines += slip_lines(report)
+    lines += [f"{channel_words(states.channels[0])}, {number(report.around[0])} to {number(report.around[1])} Hz:"]
+    lines += aligned([heads, *table], left=0)
+    return "\n".join([*lines, *([f"files: {folder}: {', '.join(files)}"] if folder else [])])
+
+
+def slip_lines(report: LevelReport) -> list[str]:
+    """Return the first slip of each damper in words."""
+    return [
+        f"{report.words(name)}: slips first at {number(at)} Hz, from {number(level)} {report.states.driven.shown[1]} on"
+        for name, (level, at) in report.first_slip().items()
+    ]
+
+
+def peak_table(report: LevelReport) -> tuple[tuple[str, ...], list[list[str]]]:
+    """Return heads and rows of the peak and its mode at the drawn levels."""
     (frequency, height), (natural, ratio) = report.peaks, report.mode
-    heads = (f"level [{shown}]", f"peak [{report.per_level}]", "at [Hz]", "mode [Hz]", "damping [%]")
-    table = [
+    heads = (
+        f"level [{report.states.driven.shown[1]}]", f"peak [{report.per_level}]", "at [Hz]", "mode [Hz]", "damping [%]"
+    )  # fmt: skip
+    rows = [
         [number(report.shown_levels[row]), *(number(_number(value)) for value in
          (height[row], frequency[row], natural[row], 100.0 * ratio[row]))]
         for row in report.rows
     ]  # fmt: skip
-    lines += [f"{channel_words(states.channels[0])}, {number(report.around[0])} to {number(report.around[1])} Hz:"]
-    lines += aligned([heads, *table], left=0)
-    return "\n".join([*lines, *([f"files: {folder}: {', '.join(files)}"] if folder else [])])
+    return heads, rows
 
 
 def _range(name: str, values: Vector, unit: str) -> str:
