@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console, ProgressLine
 from vehicle.commands.options import (
-    VEHICLE_HELP,
+    car_argument,
     car_of,
     command_parser,
     destination_of,
@@ -20,13 +20,11 @@ from vehicle.commands.options import (
     message_options,
     output_options,
     read,
-    set_option,
     setting_options,
 )
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.car_choice import CarChoice
-from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, finite_numbers, pair, part, setting
 
@@ -49,10 +47,8 @@ def parser() -> Parser:
     parser = command_parser(
         "levels", "Compute FRFs over frequency and level, and where the dampers slip: periodic states of the car."
     )
-    parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
-    set_option(parser)
+    car_argument(parser, "levels")
     setting_options(parser, LevelSettings)
-    parser.former("--vehicle", "--vehicle: no such option; name the car first, for example `levels sedan`")
     parser.add_argument("--json", action="store_true", help="print JSON")
     output_options(parser, None, default="runs/levels_<name of the car>")
     figures_option(parser)
