@@ -79,7 +79,7 @@ class LevelSettings(Settings):
         metavar="NAME",
     )
     axle_delay: float | None = setting(
-        "speed at which the plates of an axle follow those of the first [km/h]; default: no delay",
+        "speed of the car over the plates [km/h]: rear axles move later; default: no delay",
         type=float,
         metavar="KM/H",
         within="(0, inf)",
@@ -130,7 +130,7 @@ def settings_of(options: argparse.Namespace) -> LevelSettings:
 
 
 def levels_of(text: str, force: bool) -> tuple[Vector, str | None]:
-    """Return levels and their SI unit; no unit for those of a force without one.
+    """Return levels and their SI unit; no unit for levels of a force in text without a unit.
 
     Raises:
         ConfigurationError: another form or unit.
@@ -182,9 +182,9 @@ def _job(settings: LevelSettings, console: Console) -> None:
     force = settings.applied_force is not None
     default = RANDOM_LEVEL if settings.random else FORCE_LEVEL if force else LEVEL
     levels, unit = levels_of(settings.level or default, force)
-    given = [f"--{name.replace('_', '-')}" for name in settings.given() if name in OF_SINES]
-    if settings.random and (given or unit != "m"):
-        wrong = ", ".join(given) or f"--level in {unit}"
+    of_sines = [f"--{name.replace('_', '-')}" for name in settings.given() if name in OF_SINES]
+    if settings.random and (of_sines or unit != "m"):
+        wrong = ", ".join(of_sines) or f"--level in {unit}"
         raise ConfigurationError(f"--random: {wrong} belongs to sinusoidal inputs; leave it out, with levels in mm")
     if settings.realisations and not settings.random:
         raise ConfigurationError("--realisations: belongs to a random input; add --random flat")

@@ -95,8 +95,8 @@ def level_states(
     study = PeriodicCar(model, dampers, tyre_load=tyre_load, loads=loads, channels=channels, samples=samples)
     size, parts = max(1, POINTS // len(level)), []
     for start in range(0, len(frequency), size):
-        some = slice(start, start + size)
-        parts.append(study.part(frequency[some], level, shares[some]))
+        part = slice(start, start + size)
+        parts.append(study.part(frequency[part], level, shares[part]))
         if progress is not None:
             progress(min(1.0, (start + size) / len(frequency)))
     # The frequencies are the second to last axis, of `first` and of `unique` the last.
@@ -183,8 +183,8 @@ class PeriodicCar:
             tolerance: of the iteration.
         """
         forces = table.forces[:, self.at][:, :, self.at]
-        own = np.abs(forces[:, range(len(self.at)), range(len(self.at)), scaled])
-        effect = np.exp(np.log(np.maximum(own, 1e-30)).mean(axis=-1))
+        mobility = np.abs(forces[:, range(len(self.at)), range(len(self.at)), scaled])
+        effect = np.exp(np.log(np.maximum(mobility, 1e-30)).mean(axis=-1))
         scaling = np.stack([port.scaling(effect[:, index]) for index, port in enumerate(self.ports)], axis=1)
         linear = table.inputs[at, :, 0] * lines[:, None]
         present = self._present(rates, at, table, linear) if self.rolling else None

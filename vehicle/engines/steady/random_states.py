@@ -123,7 +123,7 @@ def random_states(
 
 
 def _of_one_period(car: PeriodicCar, speeds: Vector, shares: Complex) -> Responses:
-    """Return the responses at all harmonics of one period; (1, rows, columns, k)."""
+    """Return the responses at the harmonics of a period; (1, rows, columns, k)."""
     table = car.plant.responses(speeds)
     inputs = np.einsum("rwk,kw->rk", table.inputs, shares)
     return Responses(forces=table.forces[None], slopes=table.slopes[None], inputs=inputs[None, :, None])
@@ -133,15 +133,15 @@ def _linearised(car: PeriodicCar, table: Responses, amplitudes: Vector) -> Compl
     """Return the FRFs of all rows with c = E[dF/dv] of a Gaussian velocity in place of each damper; (r, k)."""
     at, laws = list(range(len(car.dampers))), [line_segments(damper) for damper in car.dampers]
     forces, inputs = np.moveaxis(table.forces[0][:, at], -1, 0), table.inputs[0, :, 0].T
-    own, result = np.full(len(at), 0.1), inputs
+    speeds, result = np.full(len(at), 0.1), inputs
     change = np.inf
     for _ in range(STEPS):
-        damping = np.array([law.damping(speed) for law, speed in zip(laws, own, strict=True)])
+        damping = np.array([law.damping(speed) for law, speed in zip(laws, speeds, strict=True)])
         gain = damping - car.model.matrices.viscous
         velocity = np.linalg.solve(np.eye(len(at)) + forces[:, at] * gain, inputs[:, at, None])
         result = inputs - (forces @ (gain[:, None] * velocity))[..., 0]
-        found = np.sqrt(0.5 * (np.abs(result[:, at] * amplitudes[:, None]) ** 2).sum(axis=0))
-        change, own = float(np.max(np.abs(found / own - 1.0))), np.sqrt(found * own)
+        following = np.sqrt(0.5 * (np.abs(result[:, at] * amplitudes[:, None]) ** 2).sum(axis=0))
+        change, speeds = float(np.max(np.abs(following / speeds - 1.0))), np.sqrt(following * speeds)
         if change < SETTLED:
             return np.asarray(result.T)
     return np.full(result.T.shape, np.nan)

@@ -18,10 +18,10 @@ ROUND = 1e-6
 """Tolerance [m, kg m2] within which a part that turns with the wheel is a body of revolution."""
 
 
-def _steady(words: str) -> Any:
+def _steady(meaning: str) -> Any:
     """Declare a steady acceleration, 0 by default."""
     grip = "1.5 g, the grip of racing tyres"
-    return quantity("m/s2", f"steady {words}", at_least=-15.0, at_most=15.0, why=grip, default=0.0)
+    return quantity("m/s2", f"steady {meaning}", at_least=-15.0, at_most=15.0, why=grip, default=0.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -36,7 +36,7 @@ class LevelInput:
         shares: share of each plate or force in the level, with its phase.
         words: the input in words.
         unit: unit of the level: "m" or "m/s2" of plates, "N" or "N m" of forces.
-        forces: indices of the forces among those of the car; empty for plates.
+        forces: indices in the forces of the car; empty for plates.
         delay: delay of each plate [s].
     """
 
@@ -74,28 +74,28 @@ def plate_input(plates: Shares, vehicle: Vehicle, unit: str = "m", axle_delay: f
         plates: see `plate_shares`.
         vehicle: the car.
         unit: "m" or "m/s2", see `LEVEL_UNITS`.
-        axle_delay: speed at which the plates of an axle follow those of the first [km/h]; None for no delay.
+        axle_delay: speed of the car over the plates [km/h], whose rear axles move later; None for no delay.
 
     Raises:
         ConfigurationError: see `plate_shares`; a speed or unit out of range.
     """
     if unit not in LEVEL_UNITS:
         raise ConfigurationError(f"level: unit {unit!r}, must be {' or '.join(LEVEL_UNITS)} for plates")
-    shares, words = plate_shares(plates, vehicle.wheels), str(plates)
+    shares, motion = plate_shares(plates, vehicle.wheels), str(plates)
     if not isinstance(plates, str):
-        words = ",".join(f"{name}={abs(share):g}@{np.degrees(cmath.phase(share)):g}" for name, share in shares.items())
-    words = f"plates {'in ' if words in MOTIONS else ''}{words}"
+        motion = ",".join(f"{name}={abs(share):g}@{np.degrees(cmath.phase(share)):g}" for name, share in shares.items())
+    motion = f"plates {'in ' if motion in MOTIONS else ''}{motion}"
     if plates in vehicle.wheels:
-        words = f"plate of the {wheel_words(str(plates), vehicle.wheels)}"
-    found = LevelInput(shares=shares, words=words, unit=unit)
+        motion = f"plate of the {wheel_words(str(plates), vehicle.wheels)}"
+    driven = LevelInput(shares=shares, words=motion, unit=unit)
     if axle_delay is None:
-        return found
+        return driven
     if not 0.0 < axle_delay < np.inf:
         raise ConfigurationError(f"axle_delay {axle_delay:g} km/h: must be a speed above 0")
     along = np.array([wheel.patch[0] for wheel in vehicle.composition.wheels])
     # x points to the rear: the first axle has the smallest.
     delay = (along - along.min()) / (axle_delay / 3.6)
-    return replace(found, delay=tuple(delay.tolist()), words=f"{words}, axles in turn at {axle_delay:g} km/h")
+    return replace(driven, delay=tuple(delay.tolist()), words=f"{motion}, axles in turn at {axle_delay:g} km/h")
 
 
 def plate_shares(plates: Shares, wheels: Sequence[str]) -> dict[str, complex]:
@@ -119,18 +119,18 @@ def plate_shares(plates: Shares, wheels: Sequence[str]) -> dict[str, complex]:
 
 
 def force_input(force: Shares, forces: Sequence[PlacedForce]) -> LevelInput:
-    """Return the input by applied forces, in place of their own histories.
+    """Return the input by applied forces.
 
     Args:
-        force: name of a force; beginning of the names of several that turn together, as "imbalance_fr" of
+        force: name of a force; common beginning of the names of forces that turn together, "imbalance_fr" for
             imbalance_fr_x and imbalance_fr_z, with the ratios and phases of their first order; shares with phases in
-            degrees as "imbalance_fr_x=1,imbalance_fr_z=1@-90"; or a dictionary of complex numbers.
+            degrees, "imbalance_fr_x=1,imbalance_fr_z=1@-90"; or a dictionary of complex numbers.
         forces: forces of the car.
 
     Raises:
         ConfigurationError: no such force, forces and moments together, or a force that changes a tyre.
     """
-    words = force if isinstance(force, str) else ", ".join(force)
+    names = force if isinstance(force, str) else ", ".join(force)
     if isinstance(force, str):
         if "=" in force:
             force = _shares("force", force, "a name", "crank_torque=1,crank_lift=1@90")
@@ -141,25 +141,25 @@ def force_input(force: Shares, forces: Sequence[PlacedForce]) -> LevelInput:
     if tyres := [each.name for each in chosen if each not in on_parts(forces)]:
         raise ConfigurationError(f"force {tyres[0]}: it changes a tyre and is no force; choose another, or plates")
     if len(units := {each.unit for each in chosen}) > 1:
-        raise ConfigurationError(f"force {words}: has forces and moments, but one level; choose forces of one unit")
+        raise ConfigurationError(f"force {names}: has forces and moments, but one level; choose forces of one unit")
     shares = _checked("force", {name: complex(share) for name, share in force.items()})
-    return LevelInput(shares=shares, words=f"force {words}", unit=units.pop(), forces=indices)
+    return LevelInput(shares=shares, words=f"force {names}", unit=units.pop(), forces=indices)
 
 
 def _together(name: str, forces: Sequence[PlacedForce]) -> dict[str, complex]:
     """Return the share of a force, or the shares of those that turn together."""
-    together = [force for force in forces if force.name.startswith(f"{name}_") and force.harmonics]
-    if not together or any(force.name == name for force in forces):
+    rotating = [force for force in forces if force.name.startswith(f"{name}_") and force.harmonics]
+    if not rotating or any(force.name == name for force in forces):
         return {forces[force_named(name, forces)].name: 1.0 + 0.0j}
-    first = min(frequency for force in together for frequency in force.harmonics)
-    amplitudes = {force.name: force.harmonics.get(first, 0.0j) for force in together}
+    first = min(frequency for force in rotating for frequency in force.harmonics)
+    amplitudes = {force.name: force.harmonics.get(first, 0.0j) for force in rotating}
     largest = max(amplitudes.values(), key=abs)
     return {each: amplitude / largest for each, amplitude in amplitudes.items()}
 
 
-def _checked(what: str, shares: dict[str, complex]) -> dict[str, complex]:
+def _checked(argument: str, shares: dict[str, complex]) -> dict[str, complex]:
     if not any(shares.values()) or not all(map(cmath.isfinite, shares.values())):
-        raise ConfigurationError(f"{what}: must have finite shares, at least one of them not 0")
+        raise ConfigurationError(f"{argument}: must have finite shares, at least one of them not 0")
     return shares
 
 
@@ -179,7 +179,7 @@ def _motion(text: str, wheels: Sequence[str]) -> dict[str, complex]:
             for wheel, (by_axle, by_side) in signs.items()}  # fmt: skip
 
 
-def _shares(what: str, text: str, names: str, example: str) -> dict[str, complex]:
+def _shares(argument: str, text: str, names: str, example: str) -> dict[str, complex]:
     """Return the shares of a text as "fl=1,fr=1@90"."""
     shares = {}
     for part in text.split(","):
@@ -188,6 +188,6 @@ def _shares(what: str, text: str, names: str, example: str) -> dict[str, complex
             shares[name] = cmath.rect(float(size), np.radians(float(phase or 0.0)))
         except (AttributeError, ValueError):
             raise ConfigurationError(
-                f"{what} {text!r}: must be {names}, or shares with phases in degrees, for example {example}"
+                f"{argument} {text!r}: must be {names}, or shares with phases in degrees, for example {example}"
             ) from None
     return shares

@@ -46,7 +46,7 @@ class SteadyCar:
             force: applied forces in place of the plates, with the level as their amplitude in place of their histories:
                 the name of a force; a beginning of names as "imbalance_fr", for forces that turn together; shares as
                 above; or a dictionary.
-            axle_delay: speed at which the plates of an axle follow those of the first [km/h]; none by default.
+            axle_delay: speed of the car over the plates [km/h], whose rear axles move later; none by default.
             channels: names or words of channels that respond to the plates, loads too.
             samples: samples of a period; a notice names channels that need more.
             progress: called with the finished fraction.
@@ -82,9 +82,9 @@ class SteadyCar:
         seed: int = 0,
         progress: Callable[[float], None] | None = None,
     ) -> RandomLevelMap:
-        """Return FRFs of the car on random plates at some levels, as the best linear approximation.
+        """Return the best linear approximation of the car on random plates: an FRF for each level.
 
-        The plates repeat after 8 s and have a flat velocity spectrum from 0.5 to 40 Hz, that of a road after ISO 8608.
+        The plates repeat after 8 s and have a flat velocity spectrum from 0.5 to 40 Hz, like a road after ISO 8608.
 
         Args:
             level: RMS of the displacement of the plates [m], ascending.

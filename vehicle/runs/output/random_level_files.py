@@ -68,7 +68,7 @@ def write_random_levels(
     figures: bool = True,
     protect: tuple[Path, ...] = (),
 ) -> list[str]:
-    """Write random.csv, a picture of each channel and summary.json, all or none; return their names.
+    """Write random.csv, a picture of each channel and summary.json, all or none; return the names.
 
     Args:
         folder: folder of the results.
