@@ -27,7 +27,8 @@ def test_a_strut_top_reads_low_and_its_run_says_so(car):
     (said,) = notices(coarse)
     assert TOP in said and "1 more channels less" in said and "solver.record_rate=8000" in said
     low = 1.0 - np.std(coarse.recording.channels[TOP]) / np.std(fine.recording.channels[TOP])
-    stated = float(re.search(r"at least ([\d.]+) %", said)[1]) / 100.0
+    (share,) = re.findall(r"at least ([\d.]+) %", said)
+    stated = float(share) / 100.0
     # The rest is motion of which the record has nothing.
     assert 0.003 < stated < low < 4.0 * stated
     assert not notices(fine)
