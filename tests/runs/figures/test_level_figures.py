@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle import Car, ConfigurationError, Signal
-from vehicle.runs.figures.level_figures import FREQUENCY
+from vehicle.runs.car.levels import FREQUENCY
 
 
 @pytest.fixture(scope="module")

@@ -8,6 +8,7 @@ import pytest
 
 from vehicle import ConfigurationError
 from vehicle.digits import number
+from vehicle.runs.car.levels import FREQUENCY, LEVEL
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.levels_section import levels_section
 
@@ -17,7 +18,7 @@ def test_the_section_has_the_first_slip_and_the_peaks(reported):
     other = dataclasses.replace(run, car=run.car.with_(["damper.coulomb_friction=50"]))
     assert str(levels_section("fl", [run, other])).count("<figure>") == 2
     text = str(levels_section("fl", [run, run]))
-    states = run.car.levels(plates="fl", frequency=np.geomspace(1.0, 30.0, 100), level=np.geomspace(1e-5, 1e-2, 24))
+    states = run.car.levels(plates="fl", frequency=FREQUENCY, level=LEVEL)
     slips = states.unsticking[states.dampers.index("damper_fl")]
     at, lowest = states.frequency[np.nanargmin(slips)], 1e3 * np.nanmin(slips)
     assert f"Left damper: slips first at {number(at)} Hz, from {number(lowest)} mm on." in text

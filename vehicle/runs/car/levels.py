@@ -23,6 +23,9 @@ from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import channel_units
 from vehicle.runs.car.level_inputs import LevelInput, Shares, force_input, plate_input
 
+FREQUENCY, LEVEL = np.geomspace(1.0, 30.0, 100), np.geomspace(1e-5, 1e-2, 24)
+"""Frequencies [Hz] and amplitudes of plates [m] of reports and figures, the defaults of `vehicle levels`."""
+
 LOWEST_ROLLING = 1.0
 """Minimum frequency for rolling tyres [Hz]: at lower frequencies a rolling car may amplify its motion."""
 

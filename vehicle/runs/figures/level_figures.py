@@ -8,20 +8,18 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car.level_inputs import MOTIONS, plate_shares
+from vehicle.runs.car.levels import FREQUENCY, LEVEL
 from vehicle.runs.figures.figure import Details, Figure, Reduction, Values
 from vehicle.runs.figures.rows import unread
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.samples import Vector
 
-FREQUENCY = np.geomspace(1.0, 30.0, 100)
-"""Frequencies [Hz], the default of `vehicle levels`."""
-
 DAMPED = 1e-3
 """Amplitude of the plates at which the damping is stated [m]."""
 
-LEVEL = np.append(np.geomspace(1e-5, DAMPED, 9), 1e-2)
-"""Levels from all dampers stuck to `DAMPED`, along which a mode is followed, and the highest of `vehicle levels`, up to
-which the peak of the mode falls most [m]."""
+PATH = np.append(np.geomspace(LEVEL[0], DAMPED, 9), LEVEL[-1])
+"""Levels from all dampers stuck to `DAMPED`, along which a mode is followed, and the highest, up to which the peak of
+the mode falls most [m]."""
 
 
 def _slip_level(car: Any, motion: str) -> float:
@@ -30,8 +28,8 @@ def _slip_level(car: Any, motion: str) -> float:
 
 
 def _level_damping(car: Any, motion: str) -> float:
-    states = car.levels(plates=motion, frequency=FREQUENCY, level=LEVEL)
-    return float(states.mode(states.falling_peak())[1][np.searchsorted(LEVEL, DAMPED)])
+    states = car.levels(plates=motion, frequency=FREQUENCY, level=PATH)
+    return float(states.mode(states.falling_peak())[1][np.searchsorted(PATH, DAMPED)])
 
 
 def _of_car(value: Callable[[Any, str], float]) -> Reduction:

@@ -3,19 +3,16 @@
 from collections.abc import Sequence
 from functools import partial
 
-import numpy as np
 from markupsafe import Markup
 
 from vehicle.drawing.rendering.level_plot import plot_level_map
+from vehicle.runs.car.levels import FREQUENCY, LEVEL
 from vehicle.runs.output.level_files import LevelReport, peak_table, slip_lines
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.svg_figure import drawing
 
 fill = templates(__file__)
-
-FREQUENCY, LEVEL = np.geomspace(1.0, 30.0, 100), np.geomspace(1e-5, 1e-2, 24)
-"""Frequencies [Hz] and levels [m], the defaults of `vehicle levels`."""
 
 
 def levels_section(motion: str, runs: Sequence[FinishedRun]) -> Markup:
