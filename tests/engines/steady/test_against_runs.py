@@ -69,7 +69,7 @@ def test_other_cars(file):
     Near 4 Hz at 0.1 mm a run needs 200 cycles to come within 0.06 %, and is 4 % off after 60.
     """
     car = Car.load(file, ["solver.record_rate=4000", *(["driving.speed=22.2"] if file != "focus" else [])])
-    found = car.levels(frequency=9.0, level=1e-3, channels=CHANNELS[:4], samples=256)
+    found = car.levels(frequency=9.0, level=1e-3, channels=CHANNELS[:4], samples=512)
     expected, _ = settled(car, 9.0, 1e-3, channels=CHANNELS[:4])
     validated(
         "Reduced engine", f"first harmonics of {file} at 9 Hz, 1 mm: periodic state", found.frf[:, 0, 0], expected,

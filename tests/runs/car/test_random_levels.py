@@ -5,7 +5,7 @@ import pytest
 
 from tests.validation import validated
 from vehicle import Car, ConfigurationError, Signal
-from vehicle.runs.car.random_levels import PERIOD, SAMPLES
+from vehicle.runs.car.random_levels import BAND, PERIOD, SAMPLES, flat_velocity
 
 CHANNELS = ("seat_rail_acc_z", "knuckle_fl_acc_z", "tyre_rl_force_z")
 LEVEL = np.array([4e-4, 2e-3, 10e-3])
@@ -21,11 +21,21 @@ def states():
 def plate(states, which, count, rate=2000):
     """The signal of a realisation, with a start over 2 s, for a number of periods."""
     frequency = states.frequency
-    amplitude = 1.0 / frequency / np.sqrt(0.5 * np.sum(frequency**-2.0))
+    amplitude = flat_velocity(frequency, *BAND)
     phases = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (6, len(frequency)))
     time = np.arange(int(count * PERIOD * rate) + 1) / rate
     waves = np.exp(2j * np.pi * np.outer(time % PERIOD, frequency))
     return time, np.real(waves @ (amplitude * np.exp(1j * phases[which]))) * np.minimum(1.0, 0.5 * time)
+
+
+def test_lines_have_the_density_of_a_flat_velocity():
+    """Of the displacement 1/(f^2 (1/low - 1/high)), RMS 1; half of the cell of the first line is in the band."""
+    frequency = np.arange(2048) / PERIOD
+    power = 0.5 * flat_velocity(frequency, *BAND) ** 2
+    assert np.sum(power) == pytest.approx(1.0, rel=1e-12) and not power[[0, 3, 321]].any()
+    density = 1.0 / (frequency[5:320] ** 2 * (1.0 / BAND[0] - 1.0 / BAND[1]))
+    np.testing.assert_allclose(power[5:320] * PERIOD, density, rtol=0.02)  # a cell is wide at 0.6 Hz
+    assert power[4] * PERIOD == pytest.approx(0.5 * 4.0 / (1.0 / BAND[0] - 1.0 / BAND[1]), rel=0.12)
 
 
 @pytest.mark.parametrize("column", [0, 1])

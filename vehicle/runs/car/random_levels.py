@@ -87,6 +87,21 @@ class RandomLevelMap(RandomStates):
         return [f"{left} of {self.ended.size} realisations did not converge; their levels have no result"]
 
 
+def flat_velocity(frequency: Vector, low: float, high: float) -> Vector:
+    """Return the amplitudes of lines of a displacement with the RMS 1 and a flat velocity spectrum in a band; (k,).
+
+    A line has the power of its cell, that of 1/f^2 from half a line below to half a line above, within the band: the
+    same RMS then belongs to the same density as without lines.
+
+    Args:
+        frequency: equidistant lines [Hz]; (k,).
+        low, high: the band [Hz].
+    """
+    half = 0.5 * (frequency[1] - frequency[0])
+    begin, end = (np.clip(frequency + side, low, high) for side in (-half, half))
+    return np.asarray(np.sqrt(2.0 * (1.0 / begin - 1.0 / end) / (1.0 / low - 1.0 / high)))
+
+
 def car_random_levels(
     car: Any,
     *,
@@ -118,17 +133,12 @@ def car_random_levels(
     )
     frequency = periodic.cycle.harmonics / PERIOD
     lowest = LOWEST_ROLLING if periodic.rolling else BAND[0]
-    # A flat spectrum of the velocity: displacements fall as 1/f.
-    amplitudes = np.zeros(len(frequency))
-    inside = (frequency >= lowest) & (frequency <= BAND[1])
-    amplitudes[inside] = 1.0 / frequency[inside]
-    amplitudes /= np.sqrt(0.5 * np.sum(amplitudes**2))
     friction = all(damper.law.friction_law != "presliding" for damper in dampers)
     states = random_states(
         periodic,
         period=PERIOD,
         shares=driven.at(frequency),
-        amplitudes=amplitudes,
+        amplitudes=flat_velocity(frequency, lowest, BAND[1]),
         level=levels,
         realisations=realisations,
         seed=seed,
