@@ -90,8 +90,8 @@ class RandomLevelMap(RandomStates):
 def flat_velocity(frequency: Vector, low: float, high: float) -> Vector:
     """Return the amplitudes of lines of a displacement with the RMS 1 and a flat velocity spectrum in a band; (k,).
 
-    A line has the power of its cell, that of 1/f^2 from half a line below to half a line above, within the band: the
-    same RMS then belongs to the same density as without lines.
+    Each line has the power of 1/f^2 in its cell, half a line to both sides and inside the band. An RMS then means the
+    same density as without lines.
 
     Args:
         frequency: equidistant lines [Hz]; (k,).
