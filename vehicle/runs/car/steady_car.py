@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
+from vehicle.runs.car.law_band import BandedCar
 from vehicle.threads import one_blas_thread
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from vehicle.runs.car.random_levels import RandomLevelMap
 
 
-class SteadyCar:
+class SteadyCar(BandedCar):
     """Base of `Car`: periodic states without a start-up."""
 
     @one_blas_thread()
