@@ -62,6 +62,21 @@ def test_the_first_harmonic_is_that_of_the_settled_run(law):
         assert abs(found.load[0, 0]) < 0.05
 
 
+@pytest.mark.parametrize("file", ["focus", "sedan", "kinematic_reference"])
+def test_other_cars(file):
+    """One plate, dampers with tables, and rigid axles on rolling tyres; 207 values of 15 cars and laws: median 0.004 %.
+
+    Near 4 Hz at 0.1 mm a run needs 200 cycles to come within 0.06 %, and is 4 % off after 60.
+    """
+    car = Car.load(file, ["solver.record_rate=4000", *(["driving.speed=22.2"] if file != "focus" else [])])
+    found = car.levels(frequency=9.0, level=1e-3, channels=CHANNELS[:4], samples=512)
+    expected, _ = settled(car, 9.0, 1e-3, channels=CHANNELS[:4])
+    validated(
+        "Reduced engine", f"first harmonics of {file} at 9 Hz, 1 mm: periodic state", found.frf[:, 0, 0], expected,
+        rel=5e-4, source="second derivation: its run in time after 60 cycles", unit="m/s2 or N per m",
+    )  # fmt: skip
+
+
 def test_rolling_tyres_have_the_force_of_their_present_load():
     """On the slope the force is a product of load and slope, so it has twice the frequency: 0.59, without it 0.40."""
     car = Car.load("focus_road", ["driving.speed=22.2", "solver.record_rate=4000"])

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from vehicle import Car, ConfigurationError
-from vehicle.runs.car.levels import crossing, plate_shares
+from vehicle.runs.car.level_inputs import plate_shares
+from vehicle.runs.car.levels import crossing
 
 WHEELS = ("fr", "fl", "rr", "rl")
 FREQUENCY, LEVEL = np.geomspace(2.0, 6.0, 25), np.geomspace(1e-5, 1e-2, 13)
