@@ -18,11 +18,15 @@ from vehicle.engines.steady.channel_rows import channel_rows, plain_rows, tyre_r
 from vehicle.engines.steady.cycle import Cycle
 from vehicle.engines.steady.law_ports import Play, Polygon, Port, Stribeck
 from vehicle.engines.steady.plant import Plant, Responses
-from vehicle.engines.steady.splitting import PeriodicForces, PresentLoad, periodic_forces
+from vehicle.engines.steady.splitting import LADDER, PeriodicForces, PresentLoad, periodic_forces
 from vehicle.model.parameters.force_elements import Damper
 
 POINTS = 256
 """Number of points that are iterated together: more no longer fit into the cache of a processor."""
+
+DIFFERENT = 1e-3
+"""Difference of two states over their largest force from which they are two: that of one state, ended twice, is below
+1e-6."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -46,6 +50,9 @@ class LevelStates:
         ended: True for the points that have converged; (f, l).
         iterations: iterations of each point; (f, l).
         unique: True at the frequencies at which no other periodic state of the period exists; (f,).
+        branches: FRFs of the states that are followed from the lowest level up and from the highest level down; NaN
+            where a state is proven to be the only one, and for laws that never fall; (2, c, f, l).
+        several: True for points at which both differ; (f, l).
     """
 
     frf: Complex
@@ -63,6 +70,15 @@ class LevelStates:
     ended: Mask
     iterations: Indices
     unique: Mask
+    branches: Complex
+    several: Mask
+
+    @property
+    def certificate(self) -> list[str]:
+        """Return for each frequency whether a state is the only one: "yes", "no" or "not proven"; (f,)."""
+        several = self.several.any(axis=1)
+        pairs = zip(self.unique.tolist(), several.tolist(), strict=True)
+        return ["no" if more else "yes" if proven else "not proven" for proven, more in pairs]
 
 
 def level_states(
@@ -146,9 +162,7 @@ class _Study:
             self.ports, self.cycle, forces[at], plate_motion[:, self.at], scaling[at], present=present
         )
         amplitudes = self.cycle.amplitudes(periodic.force)
-        rows = plate_motion - np.einsum("nrik,nik->nrk", table.forces[:, :, self.at][at], amplitudes)
-        if self.rolling:
-            rows += np.einsum("nrwk,nwk->nrk", table.slopes[at], periodic.slope)
+        rows = self._rows(table, at, plate_motion, periodic)
         figures = self._channels(rows, height) | self._dampers(
             rows, periodic, amplitudes, np.repeat(frequency, len(level))
         )
@@ -161,8 +175,56 @@ class _Study:
             values.reshape(count, len(level)) for values in (periodic.ended, periodic.iterations)
         )
         figures["first"] = self._first(forces[..., first_line], drive[:, :, first_line])
-        figures["unique"] = one_state(self.ports, forces, self._speeds(frequency), self.cycle, rolling=self.rolling)
+        unique = one_state(self.ports, forces, self._speeds(frequency), self.cycle, rolling=self.rolling)
+        figures["unique"] = unique
+        branches = np.full((2, *figures["frf"].shape), np.nan, dtype=complex)
+        several = np.zeros(periodic.ended.shape, dtype=bool)
+        if not unique.all() and any(isinstance(port, Stribeck) for port in self.ports):
+            ways = np.arange(len(at)).reshape(count, len(level)).T
+            states = [
+                self._followed(way, forces[at], plate_motion[:, self.at], scaling[at], present)
+                for way in (ways, ways[::-1])
+            ]
+            ended = states[0].ended & states[1].ended & ~unique[at]
+            largest = np.abs(states[0].force).max(axis=(1, 2))
+            several = ended & (np.abs(states[0].force - states[1].force).max(axis=(1, 2)) > DIFFERENT * largest)
+            for branch, state in enumerate(states):
+                found = self._rows(table, at, plate_motion, state)[:, self.plant.base + len(self.static) :, first_line]
+                found = np.where(ended[:, None], found / height[:, None], np.nan)
+                branches[branch] = found.T.reshape(branches.shape[1:])
+        figures["branches"], figures["several"] = branches, several.reshape(count, len(level))
         return figures
+
+    def _rows(self, table: Responses, at: Indices, plate_motion: Complex, state: PeriodicForces) -> Complex:
+        """Return the lines of all rows; (points, rows, k)."""
+        amplitudes = self.cycle.amplitudes(state.force)
+        rows = plate_motion - np.einsum("nrik,nik->nrk", table.forces[:, :, self.at][at], amplitudes)
+        return np.asarray(rows + np.einsum("nrwk,nwk->nrk", table.slopes[at], state.slope) if self.rolling else rows)
+
+    def _followed(
+        self, way: Indices, forces: Complex, drive: Complex, scaling: Vector, present: PresentLoad | None
+    ) -> PeriodicForces:
+        """Return states of which each starts at the last one.
+
+        Args:
+            way: points in the order of the levels; (l, f).
+            forces, drive, scaling, present: of all points, see `periodic_forces`.
+        """
+        parts: list[PeriodicForces] = []
+        for points in way:
+            part = None if present is None else present.at(points)
+            start = parts[-1] if parts else None
+            parts.append(
+                periodic_forces(
+                    self.ports, self.cycle, forces[points], drive[points], scaling[points], present=part,
+                    ladder=LADDER[:1], start=start,
+                )
+            )  # fmt: skip
+        order = np.argsort(way.ravel())
+        joined = {
+            name: np.concatenate([getattr(part, name) for part in parts])[order] for name in PeriodicForces.__slots__
+        }
+        return PeriodicForces(**joined)
 
     def _speeds(self, frequency: Vector) -> Vector:
         """Return the angular frequencies of the harmonics [rad/s]; (f, k)."""

@@ -65,7 +65,7 @@ class PresentLoad:
     load: Vector
     least: float = -1.0
 
-    def at(self, points: Mask) -> PresentLoad:
+    def at(self, points: Mask | Indices) -> PresentLoad:
         """Return some of the points."""
         return PresentLoad(
             ports=self.ports[points],
