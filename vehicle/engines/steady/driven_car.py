@@ -84,8 +84,8 @@ class DrivenCar:
     def scaling(self) -> Vector:
         """Return lambda of the ports; (1, ports)."""
         low, high = (max(1, round(limit * self.period)) for limit in SCALED)
-        own = np.abs(self.effects[range(len(self.at)), range(len(self.at)), low : high + 1])
-        mean = np.exp(np.mean(np.log(np.maximum(own, 1e-30)), axis=1))
+        diagonal = np.abs(self.effects[range(len(self.at)), range(len(self.at)), low : high + 1])
+        mean = np.exp(np.mean(np.log(np.maximum(diagonal, 1e-30)), axis=1))
         return np.array([[float(port.scaling(effect)) for port, effect in zip(self.ports, mean, strict=True)]])
 
     def state(
@@ -126,8 +126,8 @@ class DrivenCar:
             # Re(a xi) in time: a pole and its conjugate, with half of the residue each.
             x = half * (columns @ inputs) / self._distance(model.poles, s)
             y = 0.5 * (columns[:pairs].conj() @ inputs) / self._distance(model.poles[:pairs].conj(), s)
-            own = outputs.height @ z + outputs.velocity @ (s * z) - rows.forces @ base[:, part]
-            result[:, part] = outputs.poles @ x + conjugate @ y + own + rows.slopes @ slopes[:, part]
+            direct = outputs.height @ z + outputs.velocity @ (s * z) - rows.forces @ base[:, part]
+            result[:, part] = outputs.poles @ x + conjugate @ y + direct + rows.slopes @ slopes[:, part]
         gain = acceleration_gain(self.speeds[: forces.shape[1]] * interval) / interval**2
         result[rows.accelerations] = result[rows.accelerations] * gain
         return result

@@ -25,8 +25,8 @@ POINTS = 256
 """Number of points that are iterated together: more no longer fit into the cache of a processor."""
 
 DIFFERENT = 1e-3
-"""Difference of two states over their largest force from which they are two: that of one state, ended twice, is below
-1e-6."""
+"""Difference of two states over their largest force from which there are two states: between two iterations for one
+state it is below 1e-6."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -76,8 +76,7 @@ class LevelStates:
     @property
     def certificate(self) -> list[str]:
         """Return for each frequency whether a state is the only one: "yes", "no" or "not proven"; (f,)."""
-        several = self.several.any(axis=1)
-        pairs = zip(self.unique.tolist(), several.tolist(), strict=True)
+        pairs = np.stack([self.unique, self.several.any(axis=1)], axis=1)
         return ["no" if more else "yes" if proven else "not proven" for proven, more in pairs]
 
 
@@ -189,9 +188,11 @@ class _Study:
             largest = np.abs(states[0].force).max(axis=(1, 2))
             several = ended & (np.abs(states[0].force - states[1].force).max(axis=(1, 2)) > DIFFERENT * largest)
             for branch, state in enumerate(states):
-                found = self._rows(table, at, plate_motion, state)[:, self.plant.base + len(self.static) :, first_line]
-                found = np.where(ended[:, None], found / height[:, None], np.nan)
-                branches[branch] = found.T.reshape(branches.shape[1:])
+                response = self._rows(table, at, plate_motion, state)[
+                    :, self.plant.base + len(self.static) :, first_line
+                ]
+                response = np.where(ended[:, None], response / height[:, None], np.nan)
+                branches[branch] = response.T.reshape(branches.shape[1:])
         figures["branches"], figures["several"] = branches, several.reshape(count, len(level))
         return figures
 

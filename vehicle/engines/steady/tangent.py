@@ -71,9 +71,9 @@ def change_of_state(
     if not len(less.ports) == len(car.ports) == len(more.ports):
         raise ConfigurationError("gradient: the parameter adds a law to the car, so there is no derivative; change it")
     forces = car.cycle.amplitudes(state.force[0])
-    drives, loads, offsets = [], [], []
+    motions, loads, offsets = [], [], []
     for varied in (less, more):
-        drives.append(
+        motions.append(
             varied.drive
             - np.einsum("ijk,jk->ik", varied.effects, forces)
             + np.einsum("iwk,wk->ik", varied.slopes, state.slope[0])
@@ -81,7 +81,7 @@ def change_of_state(
         offsets.append([_law(port).at(motion) for port, motion in zip(varied.ports, state.motion[0], strict=True)])
         if varied.present is not None:
             loads.append(varied.present.changes(forces[None], state.slope) / varied.present.load[:, None])
-    drive: Complex = np.asarray(0.5 * (drives[1] - drives[0]) / step, dtype=np.complex128)
+    drive: Complex = np.asarray(0.5 * (motions[1] - motions[0]) / step, dtype=np.complex128)
     offset: Vector = np.asarray(0.5 * (np.asarray(offsets[1]) - np.asarray(offsets[0])) / step)
     laws = [
         Tangent(
@@ -99,12 +99,12 @@ def change_of_state(
         touching = car.cycle.histories(present.changes(forces[None], state.slope)) > -present.load[:, None]
         change = 0.5 * (loads[1] - loads[0]) / step * present.load[:, None]
         present = replace(present, plates=change, rate=present.rate * touching, least=-np.inf)
-    found = periodic_forces(
+    result = periodic_forces(
         laws, car.cycle, car.effects[None], drive[None], car.scaling(), present=present, tolerance=TOLERANCE
     )
-    if not found.ended[0]:
-        raise SimulationError("gradient: the linear solve does not end; use finite steps, as sweep does")
-    return found
+    if not result.ended[0]:
+        raise SimulationError("gradient: the linear solve does not end; use finite steps with sweep")
+    return result
 
 
 def _law(port: Port) -> Polygon | Stribeck:

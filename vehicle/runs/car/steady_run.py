@@ -85,9 +85,9 @@ class SteadyRun(Run):
         is differentiated along it.
 
         Args:
-            paths: parameters, as "front.damper.viscous": one, or a list.
-            figure: a smooth figure of `Run.figure`, as "weighted", "tyre_load_rms" or "rms:seat rail z"; shares of
-                time jump from sample to sample and have no derivative.
+            paths: parameters, for example "front.damper.viscous", or a list of them.
+            figure: a smooth figure of `Run.figure`, for example "weighted", "tyre_load_rms" or "rms:seat rail z"; a
+                share of time jumps from sample to sample and has no derivative.
 
         Returns:
             The derivative, or path to derivative.
@@ -121,9 +121,7 @@ class SteadyRun(Run):
 
     def _varied(self, path: str) -> tuple[float, Run, Run]:
         if self.state is None or self.drive is None:
-            raise ConfigurationError(
-                "gradient: this state is that of a run in time, which has no derivative; use sweep"
-            )
+            raise ConfigurationError("gradient: a run in time has no derivative; use sweep")
         value = self.car[path].value
         if isinstance(value, bool) or not isinstance(value, int | float) or value == 0.0:
             raise ConfigurationError(
@@ -173,7 +171,7 @@ def car_steady(car: Car, source: Signal | Road | Any, channels: Sequence[str] | 
         return replace(run, road=drive.summary(signal))
     signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=car.vehicle.shaker_wheel)
     if signal.slope_velocity:
-        raise ConfigurationError(f"steady: {signal.source} has slopes of its own, as cams; use Car.run")
+        raise ConfigurationError(f"steady: {signal.source} has the slopes of cams; use Car.run")
     require_period(signal, 0.0)
     before = max(1, math.ceil(RUN_IN / signal.duration))
     period = {wheel: values[:-1] for wheel, values in signal.displacement.items()}
@@ -253,8 +251,8 @@ def _histories(car: Car, driven: DrivenCar, state: PeriodicForces, names: Sequen
     statics = {f"tyre_{wheel}_force_z": load for wheel, load in car.static.tyre_load.items()}
     statics |= dict(zip(loads.names, loads.static.tolist(), strict=True))
     for name, law in zip(model.matrices.damper_names, laws, strict=True):
-        rest = damper_nodes(law)[0]["rest_force"]
-        statics[f"{name}_force"] = float(rest) + statics.get(f"{name}_stop_force", 0.0)
+        preload = damper_nodes(law)[0]["rest_force"]
+        statics[f"{name}_force"] = float(preload) + statics.get(f"{name}_stop_force", 0.0)
     every = driven.cycle.samples // round(driven.period / interval)
     table = dict(zip(rows, lines, strict=True)) | {
         name: driven.plates[row] for name, row in plates.items() if name in names
@@ -265,7 +263,7 @@ def _histories(car: Car, driven: DrivenCar, state: PeriodicForces, names: Sequen
 def _statistics(
     car: Car, driven: DrivenCar, state: PeriodicForces, histories: dict[str, Vector], rate: float
 ) -> Statistics:
-    """Return warnings and notices as of a run in time."""
+    """Return the warnings and notices of a run in time."""
     model, wheels = driven.model, car.vehicle.wheels
     bodies, count = (
         rotating_bodies(model.matrices),
@@ -319,7 +317,7 @@ def _marched(car: Car, signal: Signal, begin: float, names: Sequence[str]) -> St
         abs(float(np.std(before[name])) / moved - 1.0) for name in names if (moved := float(np.std(last[name])))
     )
     said = (
-        f"period {count} of a run in time, whose RMS values differ from those of the period before by up to "
+        f"RMS values of period {count} of a run in time, which differ from the period before by up to "
         f"{number(100.0 * change, 2)} %: with presliding or rubber friction, or where nearly all dampers stick, the "
         "iteration for the periodic state does not end"
     )
