@@ -184,6 +184,7 @@ def _handed(name: str) -> Callable[..., Any]:
 
 
 HANDED |= {name: _handed(name) for name in ("load_run", "save_car", "save_run", "write_report")}
+HANDED["steady_run"] = lambda *given: import_module("vehicle.runs.car.steady_run").car_steady(*given)
 HANDED["figure_of"] = lambda run, name: import_module("vehicle.runs.figures.value").figure_of(run, name)
 
 

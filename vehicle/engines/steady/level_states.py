@@ -18,11 +18,16 @@ from vehicle.engines.steady.channel_rows import channel_rows, plain_rows, tyre_r
 from vehicle.engines.steady.cycle import Cycle
 from vehicle.engines.steady.law_ports import Play, Polygon, Port, Stribeck
 from vehicle.engines.steady.plant import Plant, Responses
-from vehicle.engines.steady.splitting import PeriodicForces, PresentLoad, periodic_forces
+from vehicle.engines.steady.points import Points
+from vehicle.engines.steady.splitting import PeriodicForces, PresentLoad
 from vehicle.model.parameters.force_elements import Damper
 
 POINTS = 256
 """Number of points that are iterated together: more no longer fit into the cache of a processor."""
+
+DIFFERENT = 1e-3
+"""Difference of two states over their largest force from which there are two states: between two iterations for one
+state it is below 1e-6."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -46,6 +51,9 @@ class LevelStates:
         ended: True for the points that have converged; (f, l).
         iterations: iterations of each point; (f, l).
         unique: True at the frequencies at which no other periodic state of the period exists; (f,).
+        branches: FRFs of the states that are followed from the lowest level up and from the highest level down; NaN
+            where a state is proven to be the only one, and for laws that never fall; (2, c, f, l).
+        several: True for points at which both differ; (f, l).
     """
 
     frf: Complex
@@ -63,6 +71,14 @@ class LevelStates:
     ended: Mask
     iterations: Indices
     unique: Mask
+    branches: Complex
+    several: Mask
+
+    @property
+    def certificate(self) -> list[str]:
+        """Return for each frequency whether a state is the only one: "yes", "no" or "not proven"; (f,)."""
+        pairs = np.stack([self.unique, self.several.any(axis=1)], axis=1)
+        return ["no" if more else "yes" if proven else "not proven" for proven, more in pairs]
 
 
 def level_states(
@@ -142,7 +158,9 @@ class PeriodicCar:
         sine = np.zeros((len(at), len(self.cycle.harmonics)), dtype=complex)
         sine[:, first_line] = height
         rates = 2j * np.pi * frequency[at, None, None] * shares[at][..., None] * sine[:, None]
-        rows, periodic, amplitudes = self.states(table, at, sine, rates, slice(first_line, first_line + 1))
+        points = self.points(table, at, sine, rates, slice(first_line, first_line + 1))
+        periodic = points.states(self.ports, self.cycle)
+        rows, amplitudes = self.rows(table, at, points, periodic), self.cycle.amplitudes(periodic.force)
         forces, drive = table.forces[:, self.at][:, :, self.at], table.inputs[:, :, 0]
         figures = self._channels(rows, height) | self._dampers(
             rows, periodic, amplitudes, np.repeat(frequency, len(level))
@@ -156,23 +174,28 @@ class PeriodicCar:
             values.reshape(count, len(level)) for values in (periodic.ended, periodic.iterations)
         )
         figures["first"] = self._first(forces[..., first_line], drive[:, :, first_line])
-        figures["unique"] = one_state(self.ports, forces, self._speeds(frequency), self.cycle, rolling=self.rolling)
+        unique = one_state(self.ports, forces, self._speeds(frequency), self.cycle, rolling=self.rolling)
+        figures["unique"] = unique
+        branches = np.full((2, *figures["frf"].shape), np.nan, dtype=complex)
+        several = np.zeros(periodic.ended.shape, dtype=bool)
+        if not unique.all() and any(isinstance(port, Stribeck) for port in self.ports):
+            states = points.branches(self.ports, self.cycle, count)
+            ended = states[0].ended & states[1].ended & ~unique[at]
+            largest = np.abs(states[0].force).max(axis=(1, 2))
+            several = ended & (np.abs(states[0].force - states[1].force).max(axis=(1, 2)) > DIFFERENT * largest)
+            for branch, state in enumerate(states):
+                harmonic = self.rows(table, at, points, state)[:, self.plant.base + len(self.static) :, first_line]
+                response = np.where(ended[:, None], harmonic / height[:, None], np.nan)
+                branches[branch] = response.T.reshape(branches.shape[1:])
+        figures["branches"], figures["several"] = branches, several.reshape(count, len(level))
         return figures
 
     def responses(self, frequency: Vector, shares: Complex) -> Responses:
         """Return the responses at the harmonics of some frequencies, to the inputs in their shares; (f, ..., k)."""
         return _by_frequency(self.plant.responses(self._speeds(frequency).ravel()), shares)
 
-    def states(
-        self,
-        table: Responses,
-        at: Indices,
-        lines: Complex,
-        rates: Complex,
-        scaled: slice,
-        tolerance: float = 1e-7,
-    ) -> tuple[Complex, PeriodicForces, Complex]:
-        """Return the harmonics of all rows (n, r, k), the periodic forces and their harmonics (n, ports, k).
+    def points(self, table: Responses, at: Indices, lines: Complex, rates: Complex, scaled: slice) -> Points:
+        """Return what the iteration needs of n points.
 
         Args:
             table: responses, see `responses`.
@@ -180,7 +203,6 @@ class PeriodicCar:
             lines: harmonics of the input of each point in the unit of the level; (n, k).
             rates: harmonics of the velocities of the plates, for rolling tyres; (n, w, k).
             scaled: harmonics at which the response of a port sets its scaling lambda.
-            tolerance: of the iteration.
         """
         forces = table.forces[:, self.at][:, :, self.at]
         mobility = np.abs(forces[:, range(len(self.at)), range(len(self.at)), scaled])
@@ -188,14 +210,13 @@ class PeriodicCar:
         scaling = np.stack([port.scaling(effect[:, index]) for index, port in enumerate(self.ports)], axis=1)
         linear = table.inputs[at, :, 0] * lines[:, None]
         present = self._present(rates, at, table, linear) if self.rolling else None
-        periodic = periodic_forces(
-            self.ports, self.cycle, forces[at], linear[:, self.at], scaling[at], present=present, tolerance=tolerance
-        )
-        amplitudes = self.cycle.amplitudes(periodic.force)
-        rows = linear - np.einsum("nrik,nik->nrk", table.forces[:, :, self.at][at], amplitudes)
-        if self.rolling:
-            rows += np.einsum("nrwk,nwk->nrk", table.slopes[at], periodic.slope)
-        return rows, periodic, amplitudes
+        return Points(effects=forces[at], linear=linear, at=self.at, scaling=scaling[at], present=present)
+
+    def rows(self, table: Responses, at: Indices, points: Points, state: PeriodicForces) -> Complex:
+        """Return the harmonics of all rows in periodic states; (n, r, k)."""
+        amplitudes = self.cycle.amplitudes(state.force)
+        rows = points.linear - np.einsum("nrik,nik->nrk", table.forces[:, :, self.at][at], amplitudes)
+        return np.asarray(rows + np.einsum("nrwk,nwk->nrk", table.slopes[at], state.slope) if self.rolling else rows)
 
     def _speeds(self, frequency: Vector) -> Vector:
         """Return the angular frequencies of the harmonics [rad/s]; (f, k)."""

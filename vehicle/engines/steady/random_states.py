@@ -98,7 +98,10 @@ def random_states(
         at_level, which = np.array(points[start : start + size]).T
         driven = level[at_level, None] * unit[which]
         rates = (1j * speeds * driven)[:, None] * shares.T
-        rows, periodic, _ = car.states(table, np.zeros(len(driven), dtype=int), driven, rates, scaled, TOLERANCE)
+        at = np.zeros(len(driven), dtype=int)
+        batch = car.points(table, at, driven, rates, scaled)
+        periodic = batch.states(car.ports, car.cycle, TOLERANCE)
+        rows = car.rows(table, at, batch, periodic)
         rows[~periodic.ended] = np.nan
         ratio[:, :, at_level, which] = np.moveaxis(rows[:, first:, lines] / driven[:, None, lines], 0, -1)
         ended[at_level, which] = periodic.ended

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from vehicle.digits import number
-from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
+from vehicle.engines.simulation.recorded_acceleration import acceleration_gain
 from vehicle.engines.simulation.recording import Recording
 from vehicle.signals.analysis.spectra import power_spectral_density
 
@@ -44,7 +44,7 @@ def record_rate_notice(recording: Recording, names: Sequence[str]) -> tuple[str,
     spectrum = power_spectral_density(interval, records, window_s=SEGMENT * interval)
     # Density of a mean of zero; the gain at 0 Hz is 1.
     angle = np.maximum(2.0 * np.pi * interval * spectrum.frequency, 1e-3)
-    gain = -(WEIGHTS @ np.cos(np.outer(np.arange(-AHEAD, AHEAD + 1), angle))) / angle**2
+    gain = -acceleration_gain(angle) / angle**2
     whole = spectrum.density / np.maximum(gain, RESOLVED) ** 2
     with np.errstate(invalid="ignore"):
         lacking = np.nan_to_num(1.0 - np.sqrt(spectrum.density.sum(axis=-1) / whole.sum(axis=-1)))

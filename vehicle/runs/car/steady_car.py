@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy.typing as npt
 
+from vehicle.handed_down import HANDED
 from vehicle.runs.car.law_band import BandedCar
 from vehicle.threads import one_blas_thread
 
@@ -14,10 +16,35 @@ if TYPE_CHECKING:
     from vehicle.runs.car.level_inputs import Shares
     from vehicle.runs.car.levels import LevelMap
     from vehicle.runs.car.random_levels import RandomLevelMap
+    from vehicle.runs.car.road import Road
+    from vehicle.signals.excitation.signal import Signal
 
 
 class SteadyCar(BandedCar):
     """Base of `Car`: periodic states without a start-up."""
+
+    @one_blas_thread()
+    def steady(self, source: Signal | Road | Path | str, *, channels: Sequence[str] | None = None) -> Any:
+        """Return a run without a start-up: the periodic state of the car on plates or a road that repeat.
+
+        The last period of the record is evaluated; the periods before it let the weighting filters settle. The laws
+        act as in `Car.run` with the reduced engine, and `SteadyRun.gradient` has derivatives by the parameters. With
+        presliding or rubber friction, or where nearly all dampers stick, the iteration does not end, and a run in time
+        over several periods takes its place, with a notice.
+
+        Args:
+            source: a `Signal` of one period, whose last sample is the first of the next one, a file or name of one; or
+                a road of a class, for example road("C", 80), which repeats after its evaluated span.
+            channels: names of the recorded channels; default: all but `vehicle.requested_channels`.
+
+        Returns:
+            The run, a `vehicle.runs.car.steady_run.SteadyRun`.
+
+        Raises:
+            ConfigurationError, DataError: ends that differ, a road that does not repeat, an unstable car, or a law
+                without a periodic port, see `levels`.
+        """
+        return HANDED["steady_run"](self, source, channels)
 
     @one_blas_thread()
     def levels(
