@@ -34,6 +34,9 @@ NUMBERS: dict[str, tuple[str, dict[str, float | None]]] = {
     "suspension after the axle": ("Front suspension stiffness,25,kN/m\n", {"wheel_rate_front": 2.5e4}),
     "referred to the wheel": (SHEET + rows(WORDS["front"]) + "\nFederrate vorn (radbezogen);22".replace(";", ",")
                               + ",N/mm\n", {"wheel_rate_front": 2.2e4, "spring_stiffness_front": None}),
+    "height of the car": ("Height,1450,mm\nwheelbase,2.6,m\n", {"wheelbase": 2.6, "cog_height": None}),
+    "units in the cells of both axles": ("Parameter,Front,Rear\nRide frequency,1.25 Hz,1.40 Hz\n",
+                                         {"ride_frequency_front": 1.25, "ride_frequency_rear": 1.4}),
     "sentence on an axle": ("The car has a live rear axle.\nLive rear axle and MacPherson struts of a mid size car\n"
                             "Total mass,1900,kg\nTyre stiffness,250,N/mm\n",
                             {"kerb_mass": 1900.0, "tyre_stiffness_front": 2.5e5, "rear_axle_load": None}),
@@ -79,6 +82,19 @@ LAYOUTS = {
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_points_of_a_layout(layout, tmp_path):
     require_points(read(tmp_path, LAYOUTS[layout]))
+
+
+@pytest.mark.parametrize("head", ["Points,Front,,,Rear,,\n,x,y,z,x,y,z\n",
+                                  "Point,Front x [mm],Front y [mm],Front z [mm],Rear x,Rear y,Rear z\n"])  # fmt: skip
+def test_both_axles_beside_each_other(head, tmp_path):
+    lines = []
+    for name, key in (("wheel centre", "wheel_center"), ("strut top", "strut_top")):
+        x, y, z = (1e3 * value for value in POINTS[key])
+        lines.append(f"{name},{x:.6f},{y:.6f},{z:.6f},{x + 2600.0:.6f},{y - 10.0:.6f},{z:.6f}")
+    table = read(tmp_path, "axes: x rearward, y right, z up\n\n" + head + "\n".join(lines) + "\n", name="car.csv")
+    assert table.numbers["wheelbase"] == pytest.approx(2.6, abs=1e-9)
+    assert table.points["front"]["strut_top"] == pytest.approx(POINTS["strut_top"], abs=1e-9)
+    assert table.points["rear"]["damper_upper"] == pytest.approx((0.03, 0.56, 0.56), abs=1e-9)
 
 
 def test_german_words_of_axes_and_origin(tmp_path):

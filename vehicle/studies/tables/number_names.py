@@ -75,7 +75,7 @@ QUANTITIES: dict[str, Quantity] = {
     "wheelbase": _quantity("wheelbase", LENGTH, (1.0, 8.0), optional="vehicle length"),
     "track": _quantity("track", LENGTH, (0.8, 3.0), of_axle=None, optional="wheel"),
     "half_track": _quantity("halftrack", LENGTH, (0.4, 1.5), of_axle=None),
-    "cog_height": _quantity("cog height|cog z|height mass cog|height", LENGTH, (0.2, 1.5),
+    "cog_height": _quantity("cog height|cog z|height mass cog", LENGTH, (0.2, 1.5),
                             optional="vehicle above mass total over"),
     "cog_x": _quantity("cog|cog distance|cog x|cog longitudinal", LENGTH, (0.2, 5.0), of_axle=None,
                        optional="distance behind longitudinal x wheel mass between vehicle"),

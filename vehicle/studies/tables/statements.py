@@ -278,9 +278,13 @@ class _Reader:
         skipped = set() if heads is None else {heads.columns[key] for key in ("unit", "skip") if key in heads.columns}
         if heads is not None and heads.axles:
             for index, (axle, side) in heads.axles.items():
-                if index < len(values) and values[index] is not None:
-                    name = self._name(row, text, axle, side)
-                    self._add_number(row, name, values[index], unit or heads.units.get(f"axle{index}", ""))
+                cell = row.cells[index] if index < len(row.cells) else ""
+                joined = WITH_UNIT.fullmatch(cell)
+                size = TYRE_SIZE.fullmatch(cell)
+                number = self.table.number(row, joined[1] if joined and not size else cell)
+                if number is not None or size:
+                    of_cell = joined[2] if joined and not size else unit or heads.units.get(f"axle{index}", "")
+                    self._add_number(row, self._name(row, text, axle, side), cell if size else number, of_cell)
             return True
         after = [(index, value) for index, value in enumerate(values) if value is not None and index not in skipped]
         if heads is not None and "value" in heads.columns:
