@@ -25,7 +25,7 @@ WINGS = {
     "drawing": ("rendering", "notebook"),
     "runs": ("car", "figures", "comparison", "output", "targets", "report"),
     "handover": ("fmu", "page", "bench"),
-    "studies": ("design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
+    "studies": ("design", "mounts", "dampers", "diagnosis", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
 }
 """Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
@@ -85,6 +85,8 @@ ROOMS: dict[str, set[str]] = {
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
     "mounts": {"formats", "parameters"},
     "dampers": {"core", "formats", "parameters", "records", "rendering", "report", "threads"},
+    "diagnosis": {"analysis", "car", "excitation", "formats", "laws", "output", "parameters", "records", "reduced"}
+    | {"rendering", "threads"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
     "sweeps": {"analysis", "car", "excitation", "figures", "flexbody", "formats", "machine", "notebook"}
     | {"output", "parameters", "reduced", "rendering", "report", "simulation", "threads"},
@@ -92,11 +94,12 @@ ROOMS: dict[str, set[str]] = {
     | {"records", "reduced", "rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "excitation", "figures", "formats", "output", "parameters", "rendering"}
     | {"replacement", "sweeps", "targets"},
-    "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
+    "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "diagnosis"}
+    | {"excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
     | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
     | {"threads", "tuning", "version"},
-    "__init__": {"car", "comparison", "dampers", "excitation", "figures", "fmu", "formats", "handed_down"}
+    "__init__": {"car", "comparison", "dampers", "diagnosis", "excitation", "figures", "fmu", "formats", "handed_down"}
     | {"laws", "mounts", "optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},

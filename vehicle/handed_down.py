@@ -7,4 +7,4 @@ from collections.abc import Callable
 from typing import Any
 
 HANDED: dict[str, Callable[..., Any]] = {}
-"""Name to function: the public `load_run`, `save_car`, `save_run`, `write_report`, and `figure_of`."""
+"""Name to function: the public `load_run`, `save_car`, `save_run`, `write_report`, `figure_of`, `diagnose_car`."""

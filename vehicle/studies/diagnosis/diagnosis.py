@@ -1,0 +1,219 @@
+"""Which damper of a car is worn: a record of a drive against simulated drives of cars that may be the same.
+
+Cars with other dampers, tyres, springs, mounts and loads drive over random roads (`drawn_car`, `simulated_drives`) with
+the sensors, the speed and the length of the record. The features of the record (`features`) are compared with theirs
+(`learned`): a regression gives each unknown, the drives left out give the distribution of its error, and the distance
+of the record from all drives says whether it can be of this car at all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.arrays import Vector
+from vehicle.digits import beside_limit
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.names import in_order
+from vehicle.runs.car import Car
+from vehicle.signals.records.choice import Choice
+from vehicle.studies.diagnosis.car_diagnosis import GROUPS, CarDiagnosis
+from vehicle.studies.diagnosis.drawn_car import CarPrior
+from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts, read_drive, usable_parts
+from vehicle.studies.diagnosis.features import Bands, related_pairs
+from vehicle.studies.diagnosis.learned import Learned
+from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, Drives, simulated_drives
+
+DRIVES, MORE_DRIVES = 960, 1440
+"""Simulated drives for a known speed, and for a range of speeds."""
+
+SPEED_RATIO = 1.12
+"""Largest ratio of the speeds that cars with one rolling speed of the tyres are used for."""
+
+UNLIKE = 1.25
+"""Distance of a record over the largest of the simulated drives left out, from which on it is refused."""
+
+ROUGHER, NARROWER = 0.6, 0.9
+"""log10 of the ratio of two classes of roads; ratio of widths below which something tells more [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Diagnostics:
+    """A car with simulated drives for one kind of record: sensors, speed and length.
+
+    Attributes:
+        car: name of the car.
+        channels: accelerations of the record.
+        bands: bands of its spectra up to its highest frequency [Hz].
+        drives: simulated drives.
+        learned: what they tell.
+        at_wheels: what sensors at all wheels and strut tops would tell; None for a car without such points.
+    """
+
+    car: str
+    channels: tuple[str, ...]
+    highest: float
+    drives: Drives
+    learned: Learned = field(repr=False)
+    at_wheels: Learned | None = field(repr=False)
+
+    @classmethod
+    def of(
+        cls,
+        car: Car,
+        channels: Sequence[str],
+        speeds: tuple[float, float],
+        seconds: float,
+        *,
+        highest: float,
+        count: int | None = None,
+        seed: int = 1,
+        progress: Callable[[float], None] | None = None,
+    ) -> Diagnostics:
+        """Simulate drives.
+
+        Args:
+            car: car that is not worn.
+            channels: accelerations of the record.
+            speeds: least and greatest speed [m/s].
+            seconds: length of the record that is used [s].
+            highest: highest usable frequency of the record [Hz].
+            count: number of drives.
+            seed: seed of all random numbers.
+            progress: called with the share that is done.
+        """
+        pieces = max(1, int(np.ceil(np.log(speeds[1] / speeds[0]) / np.log(SPEED_RATIO))))
+        edges = np.geomspace(*speeds, pieces + 1)
+        ranges = [(float(low), float(high)) for low, high in pairwise(edges)]
+        priors = [CarPrior(car, round(float(np.sqrt(low * high)), 2)) for low, high in ranges]
+        drives = simulated_drives(
+            priors,
+            ranges,
+            [channels, wheel_sensors(car)],
+            highest=highest,
+            count=count or (DRIVES if pieces == 1 else MORE_DRIVES),
+            duration=seconds,
+            seed=seed,
+            progress=progress,
+        )
+        return cls(
+            car=car.vehicle.name,
+            channels=tuple(channels),
+            highest=highest,
+            drives=drives,
+            learned=Learned(drives.features[0], drives.values, TOGETHER),
+            at_wheels=Learned(drives.features[1], drives.values, TOGETHER) if wheel_sensors(car) else None,
+        )
+
+    def features(self, record: DriveRecord, parts: Parts) -> Vector:
+        """Return the features of a record."""
+        bands = Bands.of(record.rate, self.highest)
+        pieces = [record.samples[:, first:last] for first, last in parts.spans]
+        return bands.features(pieces, related_pairs(self.channels))
+
+    def diagnosis(self, record: DriveRecord, parts: Parts, shown: Sequence[str] = ("dampers",)) -> CarDiagnosis:
+        """Return what a record tells.
+
+        Raises:
+            DataError: the record is unlike all simulated drives.
+        """
+        features = self.features(record, parts)
+        distance, others = self.learned.distance(features), np.sort(self.learned.distances)
+        limit = UNLIKE * float(others[-1])
+        if not distance <= limit:
+            shown_distance, shown_limit = beside_limit(distance, limit)
+            raise DataError(
+                f"{record.name}: cannot be a drive of {self.car} as described: its spectra lie {shown_distance} from "
+                f"those of {len(others)} simulated drives with other dampers, tyres, springs, loads and roads, which "
+                f"lie at most {shown_limit} from each other; most at {self._farthest(features)}. Check the car, "
+                "--speed, the channels of --map with their directions and units, and that the engine does not idle"
+            )
+        widened = float(np.sqrt(max(1.0, distance / np.quantile(others, 0.9))))
+        return CarDiagnosis(
+            record=record.name,
+            car=self.car,
+            channels=self.channels,
+            parts=parts,
+            unknowns={
+                name: self.learned.posterior(features, number, widened) for number, name in enumerate(self.drives.names)
+            },
+            wheels=in_order(name.removeprefix("damper ") for name in self.drives.names if name.startswith("damper ")),
+            unlikely=float(np.mean(others >= distance)),
+            widened=widened,
+            shown=tuple(shown),
+            drives=len(others),
+            more=self._more(features),
+            notices=record.notices,
+        )
+
+    def _more(self, features: Vector) -> dict[str, float]:
+        """Return what would narrow the intervals of the dampers: name to the ratio of the widths, below 1."""
+        dampers = [number for number, name in enumerate(self.drives.names) if name.startswith("damper ")]
+        rougher = np.mean([self.learned.rougher(features, damper, ROUGHER) for damper in dampers])
+        more = {"a road one class rougher": float(rougher)}
+        if self.at_wheels is not None:
+            errors = [np.sqrt(np.mean(each.left_out[:, dampers] ** 2)) for each in (self.at_wheels, self.learned)]
+            more["sensors along z at all wheels and strut tops"] = float(errors[0] / errors[1])
+        return {name: ratio for name, ratio in more.items() if ratio < NARROWER}
+
+    def _farthest(self, features: Vector) -> str:
+        """Return the channel and the frequency at which a record is farthest from the drives, in words."""
+        densities = len(self.channels) * Bands.COUNT
+        apart = np.abs((features - self.learned.center) / self.learned.scale)[:densities]
+        channel, band = divmod(int(np.argmax(apart)), Bands.COUNT)
+        return f"{self.channels[channel]}, {Bands.middles(self.highest)[band]:.2g} Hz"
+
+
+def wheel_sensors(car: Car) -> list[str]:
+    """Return the vertical accelerations of the points at wheels and strut tops; none of a car without both."""
+    names = [f"{point}_{wheel}_acc_z" for point in ("knuckle", "damper_top") for wheel in car.vehicle.wheels]
+    return names if {*names} <= {*car.vehicle.acceleration_channels} else []
+
+
+def diagnose_car(
+    car: Car,
+    record: Path | str,
+    speed: float | str | tuple[float, float],
+    *,
+    channels: Mapping[str, str] | None = None,
+    choice: Choice | None = None,
+    inverted: Collection[str] = (),
+    parts: Sequence[str] = ("dampers",),
+    drives: int | None = None,
+    seed: int = 1,
+    progress: Callable[[float], None] | None = None,
+) -> CarDiagnosis:
+    """Tell from a record of a drive which damper of a car is worn, with probabilities; the road need not be known.
+
+    Args:
+        car: car that is not worn.
+        record: measurement file of any format, with accelerations at points of the car.
+        speed: speed [km/h], two speeds between which it lies, or "channel:NAME".
+        channels: channel of the model to channel of the file; by default equal names.
+        choice: units, times and excerpt of the file.
+        inverted: channels measured in the opposite direction.
+        parts: groups of unknowns for the table, of `GROUPS`.
+        drives: number of simulated drives; by default 960, and 1440 for a range of speeds.
+        seed: seed of the simulated drives.
+        progress: called with the share that is done.
+
+    Raises:
+        ConfigurationError: a wrong argument, or a car with controlled dampers.
+        DataError: bad data, less than 16 s of steady drive, or a record that cannot be of this car.
+    """
+    unknown = next((name for name in parts if name not in GROUPS), None)
+    if unknown is not None:
+        raise ConfigurationError(f"--parts {unknown}: must be one or more of {','.join(GROUPS)}")
+    asked = choice or Choice()
+    asked = replace(asked, channels={**asked.channels, **(channels or {})})
+    drive = read_drive(Path(record), car.vehicle.acceleration_channels, speed, asked, inverted)
+    usable = usable_parts(drive)
+    diagnostics = Diagnostics.of(
+        car, drive.channels, usable.speeds, usable.seconds, highest=min(drive.highest, 0.4 * RATE), count=drives,
+        seed=seed, progress=progress,
+    )  # fmt: skip
+    return diagnostics.diagnosis(drive, usable, parts)
