@@ -102,8 +102,8 @@ class Score:
             flush=True,
         )
         print(
-            f"    called worn {sure.sum()}, of these wrong {(sure & ~below).sum()}; called good {clear.sum()}, of these "
-            f"wrong {(clear & below).sum()}"
+            f"    called worn {sure.sum()}, of these wrong {(sure & ~below).sum()}; called good {clear.sum()}, of "
+            f"these wrong {(clear & below).sum()}"
             + (f"; class right {np.mean(self.classes):.2f} of {len(self.classes)}" if self.classes else ""),
             flush=True,
         )
@@ -196,8 +196,8 @@ def others(car, count, rng, factors=lambda number: None, on_road=4):
         made = [other_car(rolling, rng, factors(number * on_road + k)) for k in range(on_road)]
         where = drawn_road(car, SPEED, rng)
         histories = drive([as_drawn(each) for each, _ in made], where, rolling, (*PHONE, *EIGHT), SECONDS, rng)
-        for (_, factors), samples in zip(made, histories, strict=True):
-            yield samples, factors, where
+        for (_, truth), samples in zip(made, histories, strict=True):
+            yield samples, truth, where
 
 
 def outside(diagnostics, car, count):

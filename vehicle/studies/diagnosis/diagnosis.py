@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.digits import beside_limit
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import in_order
 from vehicle.runs.car import Car
@@ -34,8 +33,16 @@ DRIVES, MORE_DRIVES = 960, 1440
 SPEED_RATIO = 1.12
 """Largest ratio of the speeds that cars with one rolling speed of the tyres are used for."""
 
-UNLIKE = 1.25
-"""Distance of a record over the largest of the simulated drives left out, from which on it is refused."""
+USUAL, UNLIKE, WIDENING = 1.5, 3.5, 0.5
+"""How unlike the simulated drives a record may be, see `Learned`: up to the first, as 94 % of the drives, intervals are
+not widened; beyond the second, as 0.3 % of them, it is refused; between, intervals grow by exp(WIDENING) for each."""
+
+LEVEL_MARGIN = 0.3
+"""Margin of the mean logarithm of the densities of a record beyond those of the simulated drives [-]: a gain of the
+sensor of 1.2."""
+
+MOST = 12
+"""Largest number of channels: with more, their features outnumber what the simulated drives can teach."""
 
 ROUGHER, NARROWER = 0.6, 0.9
 """log10 of the ratio of two classes of roads; ratio of widths below which something tells more [-]."""
@@ -122,30 +129,27 @@ class Diagnostics:
             DataError: the record is unlike all simulated drives.
         """
         features = self.features(record, parts)
-        distance, others = self.learned.distance(features), np.sort(self.learned.distances)
-        limit = UNLIKE * float(others[-1])
-        if not distance <= limit:
-            shown_distance, shown_limit = beside_limit(distance, limit)
+        self._require_level(record, features)
+        unlike = self.learned.unlikeness(features)
+        if not unlike <= UNLIKE:
             raise DataError(
-                f"{record.name}: cannot be a drive of {self.car} as described: its spectra lie {shown_distance} from "
-                f"those of {len(others)} simulated drives with other dampers, tyres, springs, loads and roads, which "
-                f"lie at most {shown_limit} from each other; most at {self._farthest(features)}. Check the car, "
-                "--speed, the channels of --map with their directions and units, and that the engine does not idle"
+                f"{record.name}: cannot be a drive of {self.car} as described: it is {unlike:.2g} standard deviations "
+                f"more unlike {len(self.drives.values)} simulated drives than these are unlike each other, but at most "
+                f"{UNLIKE:g} are accepted; farthest is {self._farthest(features)}. Check the car, --speed, the "
+                "channels of --map with their directions and units, and that the engine does not shake the car"
             )
-        widened = float(np.sqrt(max(1.0, distance / np.quantile(others, 0.9))))
+        widened = float(np.exp(WIDENING * max(0.0, unlike - USUAL)))
         return CarDiagnosis(
             record=record.name,
             car=self.car,
             channels=self.channels,
             parts=parts,
-            unknowns={
-                name: self.learned.posterior(features, number, widened) for number, name in enumerate(self.drives.names)
-            },
+            unknowns=dict(zip(self.drives.names, self.learned.posteriors(features, widened), strict=True)),
             wheels=in_order(name.removeprefix("damper ") for name in self.drives.names if name.startswith("damper ")),
-            unlikely=float(np.mean(others >= distance)),
+            unlikely=float(np.mean(self.learned.unlike >= unlike)),
             widened=widened,
             shown=tuple(shown),
-            drives=len(others),
+            drives=len(self.drives.values),
             more=self._more(features),
             notices=record.notices,
         )
@@ -159,6 +163,23 @@ class Diagnostics:
             errors = [np.sqrt(np.mean(each.left_out[:, dampers] ** 2)) for each in (self.at_wheels, self.learned)]
             more["sensors along z at all wheels and strut tops"] = float(errors[0] / errors[1])
         return {name: ratio for name, ratio in more.items() if ratio < NARROWER}
+
+    def _require_level(self, record: DriveRecord, features: Vector) -> None:
+        """Check that the record is neither smoother nor rougher than the simulated drives."""
+        count = len(self.channels) * Bands.COUNT
+        levels, level = self.drives.features[0][:, :count].mean(axis=1), float(features[:count].mean())
+        for rougher, beyond in ((True, level - levels.max()), (False, levels.min() - level)):
+            if beyond > LEVEL_MARGIN:
+                # The densities are squares.
+                factor = np.exp(0.5 * beyond)
+                what, roads, remedy = (
+                    ("rougher", "class D", "drive on a smoother road") if rougher else
+                    ("smoother", "class A", "drive on a rougher road, and not at a standstill")
+                )  # fmt: skip
+                raise DataError(
+                    f"{record.name}: its accelerations are {factor:.3g} times {what} than in any simulated drive up to "
+                    f"roads of {roads}; check the units (--unit), or {remedy}"
+                )
 
     def _farthest(self, features: Vector) -> str:
         """Return the channel and the frequency at which a record is farthest from the drives, in words."""
@@ -210,10 +231,33 @@ def diagnose_car(
         raise ConfigurationError(f"--parts {unknown}: must be one or more of {','.join(GROUPS)}")
     asked = choice or Choice()
     asked = replace(asked, channels={**asked.channels, **(channels or {})})
-    drive = read_drive(Path(record), car.vehicle.acceleration_channels, speed, asked, inverted)
+    drive = _main_channels(car, read_drive(Path(record), car.vehicle.acceleration_channels, speed, asked, inverted))
     usable = usable_parts(drive)
     diagnostics = Diagnostics.of(
         car, drive.channels, usable.speeds, usable.seconds, highest=min(drive.highest, 0.4 * RATE), count=drives,
         seed=seed, progress=progress,
     )  # fmt: skip
     return diagnostics.diagnosis(drive, usable, parts)
+
+
+def _main_channels(car: Car, drive: DriveRecord) -> DriveRecord:
+    """Return a record with at most `MOST` channels: those at wheels and strut tops and on the seat rail.
+
+    Raises:
+        ConfigurationError: it has other ones, and more.
+    """
+    if len(drive.channels) <= MOST:
+        return drive
+    kept = [
+        row
+        for row, name in enumerate(drive.channels)
+        if name in wheel_sensors(car) or name.startswith("seat_rail_acc_")
+    ]
+    if not 0 < len(kept) <= MOST:
+        raise ConfigurationError(
+            f"{drive.name}: has {len(drive.channels)} accelerations of the car, but at most {MOST} can be used; choose "
+            "them with --map CHANNEL=NAME"
+        )
+    channels = tuple(drive.channels[row] for row in kept)
+    notice = f"of {len(drive.channels)} accelerations the {len(kept)} main ones are used: {', '.join(channels)}"
+    return replace(drive, channels=channels, samples=drive.samples[kept], notices=(*drive.notices, notice))

@@ -134,8 +134,8 @@ def read_drive(
     chosen = choose(measurement, Choice(channels={**times, "speed": name}, units=units))
     if chosen.quantities["speed"] != "velocity":
         raise DataError(
-            f"{file}: --speed {speed}: is a {chosen.quantities['speed']}, but must be a velocity; choose another "
-            "channel, or set --unit speed=km/h"
+            f"{file}: --speed {speed}: the channel is no velocity but {chosen.quantities['speed']}; choose another "
+            "one, or set --unit speed=km/h"
         )
     at_samples = np.interp(record.time, chosen.time, chosen.values["speed"])
     return replace(drive, speed=at_samples, speeds=(float(at_samples.min()), float(at_samples.max())))

@@ -6,7 +6,9 @@ Gaussian process regression of each unknown y over the features x, with standard
 
 p features. The noise l is that with the smallest error of drives left out. Drives with a common road or car are left
 out together: the residuals of a block b are A_bb^-1 a_b, with A = (K + l I)^-1 and a = A y. So are the distances d^2 =
-(x - m)' C^-1 (x - m) of a record from the drives, with the covariance C of the others.
+(x - m)' C^-1 (x - m) of a record from the drives, with the covariance C of the others. How unlike the drives a record
+is, is ln d^2 less its usual value on a road of this level, over its standard deviation: dampers that stick now and then
+scatter more.
 
 The residuals r of drives that were left out are the distribution of the error. Their scale depends on the record,
 ln s = b0 + b1 u1 + ..., fitted by maximum likelihood over the predicted values; with the weights of drives whose
@@ -82,7 +84,7 @@ class Learned:
 
     Args:
         features: features of the simulated drives; (n, p).
-        values: unknowns of the drives; (n, q).
+        values: unknowns of the drives, the level of the road last; (n, q).
         together: number of successive drives that are left out together.
     """
 
@@ -105,11 +107,16 @@ class Learned:
             error[better], self.noise[better] = mean_square[better], noise
             self.coefficients[:, better], self.left_out[:, better] = solved[:, better], residuals[:, better]
         self.predicted = y - self.left_out
-        self.distances = np.zeros(len(y))
+        distances = np.zeros(len(y))
         folds = np.arange(len(y)) // together % FOLDS
         for fold in range(FOLDS):
             inside = folds != fold
-            self.distances[~inside] = _distance(self.x[inside], self.x[~inside])
+            distances[~inside] = _distance(self.x[inside], self.x[~inside])
+        terms = _of_level(self.predicted[:, -1])
+        self.usual = np.linalg.lstsq(terms, np.log(distances), rcond=None)[0]
+        beyond = np.log(distances) - terms @ self.usual
+        self.spread = float(np.std(beyond))
+        self.unlike = beyond / self.spread
         self.scales = [self._fit_scale(unknown) for unknown in range(y.shape[1])]
 
     def _kernel(self, other: Vector) -> Vector:
@@ -135,17 +142,20 @@ class Learned:
         start[0] = 0.5 * np.log(np.mean(square))
         return np.asarray(scipy.optimize.minimize(cost, start, jac=True, method="BFGS").x)
 
-    def distance(self, features: Vector) -> float:
-        """Return the distance d^2 of a record from the drives; `distances` has those of the drives left out."""
-        return float(_distance(self.x, (features - self.center)[None] / self.scale)[0])
+    def unlikeness(self, features: Vector) -> float:
+        """Return how unlike the drives a record is; `unlike` has that of the drives left out."""
+        x = (features - self.center)[None] / self.scale
+        level = np.clip(self._kernel(x) @ self.coefficients[:, -1], *_range(self.predicted[:, -1]))
+        beyond = np.log(_distance(self.x, x)) - _of_level(level) @ self.usual
+        return float(beyond[0]) / self.spread
 
     def rougher(self, features: Vector, unknown: int, more: float) -> float:
-        """Return the scale of the error of an unknown over that of the record if the last unknown were larger.
+        """Return the scale of the error of an unknown on a rougher road over that of the record.
 
         Args:
             features: features of the record; (p,).
             unknown: number of the unknown.
-            more: increase of the last unknown.
+            more: increase of the level.
         """
         predicted = self._kernel((features - self.center)[None] / self.scale) @ self.coefficients
         other = predicted.copy()
@@ -153,26 +163,38 @@ class Learned:
         change = (self._terms(other, unknown) - self._terms(predicted, unknown)) @ self.scales[unknown]
         return float(np.exp(change[0]))
 
-    def posterior(self, features: Vector, unknown: int, widened: float = 1.0) -> Posterior:
-        """Return what a record tells of an unknown.
+    def posteriors(self, features: Vector, widened: float = 1.0) -> list[Posterior]:
+        """Return what a record tells of each unknown.
 
         Args:
             features: features of the record; (p,).
-            unknown: number of the unknown.
-            widened: factor of the scale of the error, at least 1.
+            widened: factor of the scale of the errors, at least 1.
         """
         predicted = self._kernel((features - self.center)[None] / self.scale) @ self.coefficients
-        terms, at_drives = self._terms(predicted, unknown), self._terms(self.predicted, unknown)
-        limits = at_drives.min(axis=0), at_drives.max(axis=0)
-        scale = widened * np.exp(float(np.clip(terms[0], *limits) @ self.scales[unknown]))
-        ratio = scale / np.exp(at_drives @ self.scales[unknown])
-        columns = [unknown, -1]
-        apart = (self.predicted[:, columns] - predicted[0, columns]) / (NEAR * self.predicted[:, columns].std(axis=0))
-        exponent = -0.5 * np.sum(apart**2, axis=1)
-        weights = np.exp(exponent - exponent.max())
-        draws = self.mean[unknown] + self.prior[unknown] * (predicted[0, unknown] + ratio * self.left_out[:, unknown])
-        draws = np.clip(draws, self.low[unknown], self.high[unknown])
-        return Posterior(draws=draws, weights=weights / weights.sum(), prior=float(self.prior[unknown]))
+        deviations = self.predicted.std(axis=0)
+        # Distances of the predictions of the level.
+        of_level = ((self.predicted[:, -1] - predicted[0, -1]) / (NEAR * deviations[-1])) ** 2
+        found = []
+        for unknown, scales in enumerate(self.scales):
+            at_drives = self._terms(self.predicted, unknown)
+            terms = np.clip(self._terms(predicted, unknown)[0], at_drives.min(axis=0), at_drives.max(axis=0))
+            ratio = widened * np.exp((terms - at_drives) @ scales)
+            apart = (self.predicted[:, unknown] - predicted[0, unknown]) / (NEAR * deviations[unknown])
+            exponent = -0.5 * (apart**2 + of_level)
+            weights = np.exp(exponent - exponent.max())
+            draws = predicted[0, unknown] + ratio * self.left_out[:, unknown]
+            draws = np.clip(self.mean[unknown] + self.prior[unknown] * draws, self.low[unknown], self.high[unknown])
+            found.append(Posterior(draws=draws, weights=weights / weights.sum(), prior=float(self.prior[unknown])))
+        return found
+
+
+def _of_level(level: Vector) -> Vector:
+    """Return the terms of the usual logarithm of a distance over the predicted last unknown; (m, 3)."""
+    return np.column_stack([np.ones(len(level)), level, level**2])
+
+
+def _range(values: Vector) -> tuple[float, float]:
+    return float(values.min()), float(values.max())
 
 
 def _distance(others: Vector, x: Vector) -> Vector:
