@@ -55,6 +55,13 @@ class DiagnoseSettings(Settings):
         metavar="KM/H|channel:NAME",
         required=True,
     )
+    free: tuple[str, ...] = setting(
+        "point with a device in any direction, for example seat_rail for a phone: its axes are those of the device, "
+        "and gravity in the record shows the vertical. May be repeated",
+        (),
+        action="append",
+        metavar="POINT",
+    )
     parts: str = setting(
         "groups in the table: dampers, tyres, mounts, springs, friction; default: %(default)s",
         "dampers",
@@ -76,7 +83,7 @@ def parser() -> Parser:
     parser = command_parser(
         "diagnose", "Tell from a record of a drive which damper of a car is worn; the road need not be known."
     )
-    setting_options(parser, DiagnoseSettings, "file", "speed", "parts", "drives", "seed")
+    setting_options(parser, DiagnoseSettings, "file", "speed", "free", "parts", "drives", "seed")
     mapping_options(parser)
     record_options(parser, "", channel=False, highpass=False)
     vehicle_options(parser)
@@ -120,6 +127,7 @@ def _job(settings: DiagnoseSettings, console: Console) -> None:
             speed,
             choice=choice,
             inverted=settings.measured.turned,
+            free=settings.free,
             parts=settings.parts.split(","),
             drives=settings.drives,
             seed=settings.seed,

@@ -8,7 +8,7 @@ import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.records.choice import Choice
-from vehicle.studies.diagnosis.drive_record import DriveRecord, read_drive, usable_parts
+from vehicle.studies.diagnosis.drive_record import DriveRecord, read_drive, upright, usable_parts
 
 RATE = 200.0
 CHANNELS = ("seat_rail_acc_x", "seat_rail_acc_z")
@@ -72,6 +72,29 @@ def test_the_usual_speed_is_that_of_the_longest_time():
 def test_a_short_record_is_refused():
     with pytest.raises(DataError, match=r"12 s can be used, but a diagnosis needs 16 s"):
         usable_parts(record(12.0))
+
+
+def device(samples, turn):
+    names = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")
+    return replace(record(), channels=names, samples=turn @ (samples + np.array([[0.0], [0.0], [9.81]])))
+
+
+def test_a_device_in_any_direction_is_turned_upright():
+    rng = np.random.default_rng(7)
+    samples = np.array([[0.5], [0.3], [1.0]]) * rng.standard_normal((3, 8000))
+    samples -= samples.mean(axis=1, keepdims=True)
+    for turn in (np.eye(3), np.diag([1.0, -1.0, -1.0]), scipy.spatial.transform.Rotation.random(rng=3).as_matrix()):
+        found = upright(device(samples, turn), "seat_rail").samples
+        assert found[2] == pytest.approx(samples[2] + 9.81, abs=1e-9)
+        # The horizontal axes keep any angle: their squares add up.
+        assert np.sum(found[:2] ** 2) == pytest.approx(np.sum(samples[:2] ** 2))
+
+
+def test_a_device_needs_gravity_and_three_axes():
+    with pytest.raises(DataError, match="the mean of seat_rail is 0"):
+        upright(device(np.full((3, 8000), [[0.0], [0.0], [-9.81]]), np.eye(3)), "seat_rail")
+    with pytest.raises(ConfigurationError, match="needs all three axes"):
+        upright(record(), "seat_rail")
 
 
 def test_files_give_accelerations_and_speed(tmp_path):

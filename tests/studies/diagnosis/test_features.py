@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle.errors import DataError
-from vehicle.studies.diagnosis.features import NARROW, WIDE, Bands, related_pairs
+from vehicle.studies.diagnosis.features import NARROW, WIDE, Bands, related_pairs, rows_of_points
 
 
 def test_white_noise_has_its_density_in_all_bands_and_equal_channels_the_coherency_one():
@@ -38,3 +38,17 @@ def test_pairs_are_those_of_a_point_or_a_wheel():
 def test_a_channel_at_rest_is_refused():
     with pytest.raises(DataError, match="at rest"):
         Bands.of(250.0, 40.0).features([np.zeros((1, 5000))], [])
+
+
+def test_a_free_point_has_the_same_features_at_any_angle():
+    rate, rng = 250.0, np.random.default_rng(6)
+    samples = np.array([[1.0], [0.4], [2.0]]) * rng.standard_normal((3, int(40 * rate)))
+    samples[0] += 0.3 * samples[2]
+    bands, axes = Bands.of(rate, 40.0), [(0, 1, 2)]
+    plain = bands.features([samples], [(0, 1), (0, 2), (1, 2)], axes)
+    for angle in (0.4, 2.0, np.pi):
+        turn = np.array([[np.cos(angle), -np.sin(angle), 0.0], [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 1.0]])
+        turned = bands.features([turn @ samples], [(0, 1), (0, 2), (1, 2)], axes)
+        assert turned == pytest.approx(plain, abs=1e-9)
+    assert bands.features([samples[[1, 0, 2]]], [(0, 1)]) != pytest.approx(bands.features([samples], [(0, 1)]))
+    assert rows_of_points(["a_acc_z", "a_acc_x", "a_acc_y", "b_acc_z"], ["a", "b"]) == [(1, 2, 0)]

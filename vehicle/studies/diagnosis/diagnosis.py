@@ -22,8 +22,8 @@ from vehicle.runs.car import Car
 from vehicle.signals.records.choice import Choice
 from vehicle.studies.diagnosis.car_diagnosis import GROUPS, CarDiagnosis
 from vehicle.studies.diagnosis.drawn_car import CarPrior
-from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts, read_drive, usable_parts
-from vehicle.studies.diagnosis.features import Bands, related_pairs
+from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts, read_drive, upright, usable_parts
+from vehicle.studies.diagnosis.features import Bands, related_pairs, rows_of_points
 from vehicle.studies.diagnosis.learned import Learned
 from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, Drives, simulated_drives
 
@@ -55,7 +55,8 @@ class Diagnostics:
     Attributes:
         car: name of the car.
         channels: accelerations of the record.
-        bands: bands of its spectra up to its highest frequency [Hz].
+        highest: highest usable frequency of the record [Hz].
+        free: points whose horizontal axes have any direction.
         drives: simulated drives.
         learned: what they tell.
         at_wheels: what sensors at all wheels and strut tops would tell; None for a car without such points.
@@ -64,6 +65,7 @@ class Diagnostics:
     car: str
     channels: tuple[str, ...]
     highest: float
+    free: tuple[str, ...]
     drives: Drives
     learned: Learned = field(repr=False)
     at_wheels: Learned | None = field(repr=False)
@@ -77,6 +79,7 @@ class Diagnostics:
         seconds: float,
         *,
         highest: float,
+        free: Sequence[str] = (),
         count: int | None = None,
         seed: int = 1,
         progress: Callable[[float], None] | None = None,
@@ -89,6 +92,7 @@ class Diagnostics:
             speeds: least and greatest speed [m/s].
             seconds: length of the record that is used [s].
             highest: highest usable frequency of the record [Hz].
+            free: points whose horizontal axes have any direction.
             count: number of drives.
             seed: seed of all random numbers.
             progress: called with the share that is done.
@@ -102,6 +106,7 @@ class Diagnostics:
             ranges,
             [channels, wheel_sensors(car)],
             highest=highest,
+            free=free,
             count=count or (DRIVES if pieces == 1 else MORE_DRIVES),
             duration=seconds,
             seed=seed,
@@ -111,6 +116,7 @@ class Diagnostics:
             car=car.vehicle.name,
             channels=tuple(channels),
             highest=highest,
+            free=tuple(free),
             drives=drives,
             learned=Learned(drives.features[0], drives.values, TOGETHER),
             at_wheels=Learned(drives.features[1], drives.values, TOGETHER) if wheel_sensors(car) else None,
@@ -120,7 +126,7 @@ class Diagnostics:
         """Return the features of a record."""
         bands = Bands.of(record.rate, self.highest)
         pieces = [record.samples[:, first:last] for first, last in parts.spans]
-        return bands.features(pieces, related_pairs(self.channels))
+        return bands.features(pieces, related_pairs(self.channels), rows_of_points(self.channels, self.free))
 
     def diagnosis(self, record: DriveRecord, parts: Parts, shown: Sequence[str] = ("dampers",)) -> CarDiagnosis:
         """Return what a record tells.
@@ -203,6 +209,7 @@ def diagnose_car(
     channels: Mapping[str, str] | None = None,
     choice: Choice | None = None,
     inverted: Collection[str] = (),
+    free: Sequence[str] = (),
     parts: Sequence[str] = ("dampers",),
     drives: int | None = None,
     seed: int = 1,
@@ -217,6 +224,8 @@ def diagnose_car(
         channels: channel of the model to channel of the file; by default equal names.
         choice: units, times and excerpt of the file.
         inverted: channels measured in the opposite direction.
+        free: points with a device in any direction, for example ("seat_rail",); its axes x, y and z are those of the
+            device, and the record contains gravity.
         parts: groups of unknowns for the table, of `GROUPS`.
         drives: number of simulated drives; by default 960, and 1440 for a range of speeds.
         seed: seed of the simulated drives.
@@ -232,11 +241,20 @@ def diagnose_car(
     asked = choice or Choice()
     asked = replace(asked, channels={**asked.channels, **(channels or {})})
     drive = _main_channels(car, read_drive(Path(record), car.vehicle.acceleration_channels, speed, asked, inverted))
+    for point in free:
+        drive = upright(drive, point)
     usable = usable_parts(drive)
     diagnostics = Diagnostics.of(
-        car, drive.channels, usable.speeds, usable.seconds, highest=min(drive.highest, 0.4 * RATE), count=drives,
-        seed=seed, progress=progress,
-    )  # fmt: skip
+        car,
+        drive.channels,
+        usable.speeds,
+        usable.seconds,
+        highest=min(drive.highest, 0.4 * RATE),
+        free=free,
+        count=drives,
+        seed=seed,
+        progress=progress,
+    )
     return diagnostics.diagnosis(drive, usable, parts)
 
 

@@ -18,9 +18,10 @@ from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.recorded_road import PREFIX
 from vehicle.signals.formats.reader import read_record
+from vehicle.signals.formats.units import STANDARD_GRAVITY
 from vehicle.signals.records.choice import Choice, choose
 from vehicle.signals.records.measured import read_measured
-from vehicle.studies.diagnosis.features import HIGHEST, LOWEST, WINDOW_S
+from vehicle.studies.diagnosis.features import HIGHEST, LOWEST, WINDOW_S, rows_of_points
 
 SLOWEST, FASTEST = 20.0, 200.0
 """Speeds of a drive [km/h]: slower, the waves of a road are too short; faster, no road is public."""
@@ -37,6 +38,9 @@ SLOW_BAND = 0.4
 ROUGHER, SMOOTHER, CREST = 3.0, 0.25, 5.5
 """Largest and smallest RMS of a second over the median, and largest peak over the RMS of its window, of half of the
 channels [-]. On a random road the peak of a channel is 3.2 to 5, and the RMS of a second up to 2.3 times the median."""
+
+OFFSET = 0.15
+"""Largest deviation of the mean of a device from gravity [-]: offsets of cheap sensors reach 0.1 g."""
 
 SHORTEST, LONGEST = 16.0, 60.0
 """Least and most time of a record that is used [s]: seven windows, and what a minute tells."""
@@ -139,6 +143,40 @@ def read_drive(
         )
     at_samples = np.interp(record.time, chosen.time, chosen.values["speed"])
     return replace(drive, speed=at_samples, speeds=(float(at_samples.min()), float(at_samples.max())))
+
+
+def upright(record: DriveRecord, point: str) -> DriveRecord:
+    """Return a record with the axes of a device turned by the smallest angle so that its mean points along z.
+
+    A device at rest measures +g upwards. With the mean direction u and z, the rotation about w = u x z is
+    R = 1 + [w] + [w]^2/(1 + u_z) (Rodrigues).
+
+    Raises:
+        ConfigurationError: the record has not all three axes of the point.
+        DataError: the mean is not gravity.
+    """
+    rows = rows_of_points(record.channels, [point])
+    if not rows:
+        raise ConfigurationError(
+            f"--free {point}: needs all three axes of the point; set --map {point}_acc_x=NAME, also for y and z"
+        )
+    axes = list(rows[0])
+    mean = record.samples[axes].mean(axis=1)
+    length = float(np.linalg.norm(mean))
+    if abs(length / STANDARD_GRAVITY - 1.0) > OFFSET:
+        raise DataError(
+            f"{record.name}: the mean of {point} is {length:.3g} m/s2, but gravity shows where a device in any direction "
+            f"has its vertical; give a record with gravity ({STANDARD_GRAVITY:.3g} m/s2), or leave --free out"
+        )
+    x, y, up = mean / length
+    if up < -1.0 + 1e-9:
+        turn = np.diag([1.0, -1.0, -1.0])
+    else:
+        cross = np.array([[0.0, 0.0, -x], [0.0, 0.0, -y], [x, y, 0.0]])
+        turn = np.eye(3) + cross + cross @ cross / (1.0 + up)
+    samples = record.samples.copy()
+    samples[axes] = turn @ samples[axes]
+    return replace(record, samples=samples)
 
 
 def usable_parts(record: DriveRecord) -> Parts:

@@ -12,9 +12,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from vehicle.arrays import Vector
+from vehicle.arrays import Complex, Vector
 from vehicle.errors import DataError
-from vehicle.names import CORNERS
+from vehicle.names import AXES, CORNERS
 
 WINDOW_S = 4.0
 """Length of the windows [s]: lines of 0.25 Hz, narrower than every resonance of a damped body."""
@@ -62,12 +62,16 @@ class Bands:
         edges = np.geomspace(LOWEST, min(highest, HIGHEST), NARROW + 1)
         return np.asarray(np.sqrt(edges[1:] * edges[:-1]))
 
-    def features(self, parts: Sequence[Vector], pairs: Sequence[tuple[int, int]]) -> Vector:
+    def features(
+        self, parts: Sequence[Vector], pairs: Sequence[tuple[int, int]], free: Sequence[tuple[int, int, int]] = ()
+    ) -> Vector:
         """Return the features of a record.
 
         Args:
             parts: samples of all channels in each part [m/s2]; (channels, n) each, n at least a window.
             pairs: pairs of channels with coherencies.
+            free: rows x, y, z of points whose horizontal axes have any direction: they are turned to the principal
+                axes of their motion, the larger first, with signs that make them move with z.
 
         Raises:
             DataError: a channel is at rest.
@@ -82,6 +86,8 @@ class Bands:
             total = cross if count == 0 else total + cross
             count += cut.shape[1]
         spectra = total * (2.0 / (self.rate * count * np.sum(hann**2)))
+        for axes in free:
+            spectra = self._turned(spectra, axes)
         power = np.einsum("aaf->af", spectra).real
         if np.any(power @ self.narrow.T <= 0.0):
             raise DataError("diagnose: a channel of the record is at rest; leave it out with --map")
@@ -91,6 +97,18 @@ class Bands:
         first, second = np.array(pairs, dtype=int).reshape(-1, 2).T
         coherency = in_bands[first, second] / (level[first] * level[second])
         return np.concatenate([*found, coherency.real.ravel(), coherency.imag.ravel()])
+
+    def _turned(self, spectra: Complex, axes: tuple[int, int, int]) -> Complex:
+        """Return the cross spectra with the horizontal axes of a point turned to the principal ones."""
+        x, y, z = axes
+        used = self.narrow.sum(axis=0) > 0.0
+        together = spectra[np.ix_(axes, axes)][:, :, used].sum(axis=2).real
+        _, principal = np.linalg.eigh(together[:2, :2])
+        turn = principal[:, ::-1].T
+        turn = turn * np.where(turn @ together[:2, 2] < 0.0, -1.0, 1.0)[:, None]
+        whole = np.eye(len(spectra))
+        whole[np.ix_((x, y), (x, y))] = turn
+        return np.asarray(np.einsum("ab,bcf,dc->adf", whole, spectra, whole))
 
 
 def _weights(frequency: Vector, highest: float, count: int) -> Vector:
@@ -116,3 +134,10 @@ def related_pairs(channels: Sequence[str]) -> list[tuple[int, int]]:
         for second in range(first + 1, len(channels))
         if points[first] == points[second] or (wheels[first] in CORNERS.values() and wheels[first] == wheels[second])
     ]
+
+
+def rows_of_points(channels: Sequence[str], points: Sequence[str]) -> list[tuple[int, int, int]]:
+    """Return the rows x, y and z of points that have all three among the channels."""
+    names = list(channels)
+    wanted = [tuple(f"{point}_acc_{axis}" for axis in AXES) for point in points]
+    return [(names.index(x), names.index(y), names.index(z)) for x, y, z in wanted if {x, y, z} <= {*names}]

@@ -14,7 +14,7 @@ from vehicle.runs.car import Car
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.studies.diagnosis.drawn_car import CarPrior, DrawnCar
 from vehicle.studies.diagnosis.drawn_road import DrawnRoad
-from vehicle.studies.diagnosis.features import HIGHEST, Bands, related_pairs
+from vehicle.studies.diagnosis.features import HIGHEST, Bands, related_pairs, rows_of_points
 from vehicle.threads import one_blas_thread
 
 RATE, STEP = 250.0, 2e-3
@@ -71,6 +71,7 @@ def simulated_drives(
     speeds: Sequence[tuple[float, float]],
     sensors: Sequence[Sequence[str]],
     *,
+    free: Sequence[str] = (),
     highest: float,
     count: int,
     duration: float,
@@ -83,6 +84,7 @@ def simulated_drives(
         priors: cars at one or several speeds.
         speeds: range of the speed for each of them [m/s].
         sensors: sets of accelerations, each of which gives features.
+        free: points whose horizontal axes have any direction.
         highest: highest frequency of the features [Hz].
         count: number of drives, rounded up to whole vectors of cars.
         duration: length of the record [s].
@@ -93,7 +95,7 @@ def simulated_drives(
     bands, drawn = Bands.of(RATE, highest), list[DrawnCar]()
     channels = tuple(dict.fromkeys(channel for each in sensors for channel in each))
     rows = [[channels.index(channel) for channel in each] for each in sensors]
-    pairs = [related_pairs(each) for each in sensors]
+    pairs = [(related_pairs(each), rows_of_points(each, free)) for each in sensors]
     features: list[list[Vector]] = [[] for _ in sensors]
     values, names = list[list[float]](), tuple[str, ...]()
     groups = USES * -(-count // TOGETHER)
@@ -107,7 +109,7 @@ def simulated_drives(
         histories = drive(cars, road, prior.car, channels, duration, rng)
         for car, samples in zip(cars, histories, strict=True):
             for found, chosen, related in zip(features, rows, pairs, strict=True):
-                found.append(bands.features([samples[chosen]], related))
+                found.append(bands.features([samples[chosen]], *related))
             of_road = {"waviness": road.waviness, "speed": road.speed, "level": float(np.log10(road.level))}
             unknowns = {**car.values, **of_road}
             names = tuple(unknowns)
