@@ -95,10 +95,8 @@ ROOMS: dict[str, set[str]] = {
     "optimisation": {"analysis", "car", "excitation", "figures", "formats", "output", "parameters", "rendering"}
     | {"replacement", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "diagnosis"}
-    | {"excitation"}
-    | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
-    | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
-    | {"threads", "tuning", "version"},
+    | {"excitation", "flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output", "page"}
+    | {"parameters", "records", "rendering", "replication", "report", "sweeps", "threads", "tuning", "version"},
     "__init__": {"car", "comparison", "dampers", "diagnosis", "excitation", "figures", "fmu", "formats", "handed_down"}
     | {"laws", "mounts", "optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
@@ -121,18 +119,8 @@ HEAVY = {
 }
 
 MAKERS = {
-    "add_actuator",
-    "add_body",
-    "add_equality",
-    "add_exclude",
-    "add_freejoint",
-    "add_geom",
-    "add_joint",
-    "add_mesh",
-    "add_numeric",
-    "add_sensor",
-    "add_site",
-    "add_tendon",
+    *("add_actuator", "add_body", "add_equality", "add_exclude", "add_freejoint", "add_geom"),
+    *("add_joint", "add_mesh", "add_numeric", "add_sensor", "add_site", "add_tendon"),
 }
 """Methods of MjSpec that make elements of a model of the car."""
 

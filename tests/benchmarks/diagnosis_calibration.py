@@ -118,7 +118,7 @@ def _list(values):
     return " ".join(f"{value:.3f}" for value in values)
 
 
-def drawn(prior, count, rng, on_road=2):
+def drawn(prior, count, rng, on_road=4):
     """Yield samples, true factors and road of drives of drawn cars, `on_road` of them on each road."""
     for _ in range(-(-count // on_road)):
         cars = [prior.with_dampers(prior.draw(rng), rng) for _ in range(on_road)]

@@ -354,17 +354,6 @@ class Car(SteadyCar):
         """
         return road_estimate(self, source.under(self.vehicle, self.overrides), channels)
 
-    def diagnose(self, record: Path | str, speed: float | str | tuple[float, float], **settings: Any) -> Any:
-        """Return a `CarDiagnosis`: which damper is worn by a record of a drive; this car has good ones.
-
-        Args:
-            record: measurement file with accelerations at points of the car.
-            speed: speed [km/h], two speeds between which it lies, or "channel:NAME".
-            settings: `channels` {channel of the car: channel of the file}, `choice`, `inverted`, `parts`, `drives`,
-                `seed`, `progress`; see `vehicle.studies.diagnosis.diagnosis.diagnose_car`.
-        """
-        return HANDED["diagnose_car"](self, record, speed, **settings)
-
     @one_blas_thread()
     def run(
         self,

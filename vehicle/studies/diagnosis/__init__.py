@@ -1,1 +1,1 @@
-"""Diagnosis of a driven car from a record: which damper is worn, and how sure that is."""
+"""Diagnosis of a driven car from a record: worn dampers with their probabilities."""

@@ -1,4 +1,4 @@
-"""What a record tells of a car: distributions of its unknowns, in words, as a table and as JSON, the answer first."""
+"""Diagnosis of a car: posterior distributions of its unknowns in sentences, in a table and in JSON."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ SURE, TOGETHER = 0.9, 0.95
 """Probability from which on a statement on a damper is made, and of the statement on all others."""
 
 TELLS = 0.85
-"""Deviation of an unknown over that before the record, above which the record tells nothing about it."""
+"""Ratio of posterior to prior standard deviation above which an unknown counts as undetermined."""
 
 INTERVAL = (0.05, 0.95)
 """Ends of the printed intervals: 90 % lie inside."""
 
 LIKELIEST = 0.99
-"""Largest printed probability: a thousand drives say nothing beyond it."""
+"""Largest printed probability: a thousand drives resolve no more."""
 
 GROUPS = {"dampers": "damper ", "tyres": "tyre ", "mounts": "mount ", "springs": "spring ", "friction": "friction "}
 """Groups of unknowns, and the first word of their names."""
 
 CANNOT = (
-    "left from right, if all sensors lie on the middle of the car; the force at other velocities than about 0.13 m/s; "
-    "faults that the simulated cars do not have, such as play in a joint or an unbalanced wheel"
+    "the side of a damper, if all sensors are in the middle of the car; forces far from 0.13 m/s; faults outside the "
+    "simulated cars, for example play in a joint or an unbalanced wheel"
 )
-"""What a record cannot tell."""
+"""Limits of every record, for the text."""
 
 
 class RoadClass(NamedTuple):
@@ -51,7 +51,7 @@ class RoadClass(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class CarDiagnosis:
-    """What a record tells of a car.
+    """Diagnosis of a car by a record of a drive.
 
     Attributes:
         record: name of the record.
@@ -64,7 +64,7 @@ class CarDiagnosis:
         widened: factor of all intervals, since the record is unlike the simulated drives.
         shown: groups of unknowns for the table, of `GROUPS`.
         drives: number of simulated drives.
-        more: what would narrow the intervals of the dampers, and the ratio of their widths [-].
+        more: change of the test that narrows the intervals of the dampers, and the ratio of widths [-].
         notices: messages on the record.
     """
 
@@ -103,10 +103,10 @@ class CarDiagnosis:
 
     @property
     def answer(self) -> str:
-        """Return the answer in a few sentences: worn dampers, undecided ones, untold ones, the others."""
+        """Return a sentence for each worn, undecided or undetermined damper, and a sentence for the other dampers."""
         healthy = [wheel for wheel in self.wheels if self.worn(wheel) <= 1.0 - SURE]
-        untold = [wheel for wheel in self.wheels if wheel not in healthy and not told(self.damper(wheel))]
-        below = [wheel for wheel in self.wheels if wheel not in (*healthy, *untold)]
+        unclear = [wheel for wheel in self.wheels if wheel not in healthy and not told(self.damper(wheel))]
+        below = [wheel for wheel in self.wheels if wheel not in (*healthy, *unclear)]
         sentences = []
         for wheel in sorted(below, key=self.worn, reverse=True):
             undecided = "" if self.worn(wheel) >= SURE else "undecided, "
@@ -114,19 +114,19 @@ class CarDiagnosis:
                 f"{self._title(wheel)}: {undecided}{_percent(self.worn(wheel))} likely below {100.0 * WORN:.0f} % of "
                 f"nominal ({_interval(self.damper(wheel))})."
             )
-        if untold:
-            sentences.append(f"{', '.join(map(self._title, untold))}: this record cannot tell.")
+        if unclear:
+            sentences.append(f"{', '.join(map(self._title, unclear))}: undetermined, this record does not suffice.")
         if healthy:
             sentences.append(self._others(healthy))
         return " ".join(sentences)
 
     def _others(self, healthy: Sequence[str]) -> str:
-        """Return the sentence on dampers that are not worn, with the highest limit that holds for all of them."""
+        """Return the sentence on good dampers, with the highest limit that all of these dampers exceed."""
         who = "All dampers" if len(healthy) == len(self.wheels) else "The others"
         if len(healthy) == 1:
             who = self._title(healthy[0])
         limits = np.linspace(WORN, 1.0, 41)
-        # The sum of the probabilities of each is at least that of any of them.
+        # Union bound: the probability of any event is at most the sum of all probabilities.
         missed = np.array([sum(self.damper(wheel).below(limit) for wheel in healthy) for limit in limits])
         certain = limits[missed <= 1.0 - TOGETHER]
         limit, share = (certain[-1], TOGETHER) if certain.size else (WORN, 1.0 - missed[0])
@@ -139,16 +139,16 @@ class CarDiagnosis:
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """Return a row for each shown unknown: median, interval, probabilities, whether the record tells it."""
+        """Return a row for each shown unknown: median, interval, probabilities, and True if it is determined."""
         first_words = tuple(GROUPS[group] for group in self.shown)
-        found = []
+        rows = []
         for name, posterior in self.unknowns.items():
             if name.startswith(first_words):
                 low, middle, high = (posterior.quantile(share) for share in (INTERVAL[0], 0.5, INTERVAL[1]))
                 row = {"unknown": name, "median": middle, "low": low, "high": high}
                 row |= {"below_60_percent": posterior.below(WORN), "above_80_percent": 1.0 - posterior.below(GOOD)}
-                found.append(row | {"told": told(posterior)})
-        return found
+                rows.append(row | {"told": told(posterior)})
+        return rows
 
     @property
     def csv(self) -> str:
@@ -176,22 +176,22 @@ class CarDiagnosis:
             "widened": self.widened,
             "unknowns": self.rows,
             "road": {"class": road.letter, "probability": road.probability, "density_m3": [road.low, road.high]},
-            "would_tell_more": dict(self.more),
-            "cannot_tell": CANNOT,
+            "narrower_with": dict(self.more),
+            "in_no_record": CANNOT,
             "notices": list(self.notices),
         }
 
     def __repr__(self) -> str:
-        """Return the answer."""
+        """Return car, record and the sentences."""
         return f"CarDiagnosis({self.car} by {self.record}: {self.answer})"
 
     def __str__(self) -> str:
-        """Return the answer, the table, and what belongs to it."""
+        """Return sentences, table, road class, used parts and fit."""
         parts, road = self.parts, self.road
         slow, fast = (3.6 * speed for speed in parts.speeds)
         speed = f"{slow:.0f} km/h" if fast - slow < 1.0 else f"{slow:.0f} to {fast:.0f} km/h"
         left_out = ", ".join(f"{reason} {number(seconds)} s" for reason, seconds in parts.left_out.items())
-        more = "; ".join(f"{what}: intervals {number(ratio, 2)} times as wide" for what, ratio in self.more.items())
+        more = "; ".join(f"{change}: intervals {number(ratio, 2)} times as wide" for change, ratio in self.more.items())
         widened = f"; intervals are {number(self.widened, 2)} times as wide for that" if self.widened > 1.0 else ""
         lines = [
             self.answer,
@@ -205,8 +205,8 @@ class CarDiagnosis:
             f"{len(self.channels)} channels",
             f"fit: {100.0 * self.unlikely:.0f} % of {self.drives} simulated drives of {self.car} are as unlike the "
             f"others as this record{widened}",
-            *([f"would tell more: {more}"] if more else []),
-            f"cannot tell: {CANNOT}",
+            *([f"narrower with: {more}"] if more else []),
+            f"in no record: {CANNOT}",
         ]
         return "\n".join(lines)
 
@@ -222,14 +222,14 @@ class CarDiagnosis:
                     f"{row['median']:.2f}",
                     f"{row['low']:.2f} to {row['high']:.2f}",
                     *(_percent(share) if damper else "" for share in shares),
-                    "" if row["told"] else "not told",
+                    "" if row["told"] else "undetermined",
                 )
             )
         return aligned(cells)
 
 
 def told(posterior: Posterior) -> bool:
-    """Return True if a record tells something of an unknown."""
+    """Return True if the posterior is narrower than the prior."""
     return posterior.deviation <= TELLS * posterior.prior
 
 

@@ -26,8 +26,10 @@ FASTEST = 3.0
 """End of the tables [m/s]: no damper moves faster on the roads of classes A to E."""
 
 OUTER = 0.02
-"""Slope beyond `FASTEST` over that of the line from rest to the nominal force at v0 [-]: below that of every drawn law,
-so that it is the smallest slope of all."""
+"""Slope beyond `FASTEST` over the nominal F0(v0)/v0 [-]: smaller than every slope of a drawn damper."""
+
+FALL = 0.01
+"""Velocity of the drawn Stribeck friction [m/s], usual for seals."""
 
 POINTS = 9
 """Points of a table on each side of rest, from 0.02 m/s on in equal ratios of 1.9; each costs time in every step."""
@@ -37,7 +39,7 @@ def require_passive(composition: Composition) -> None:
     """Reject a car with a damper whose force does not follow from its velocity and its friction, or at no wheel.
 
     Raises:
-        ConfigurationError: no damper, a controlled one, one with a law of the user's own, or one at no wheel.
+        ConfigurationError: no damper, a controlled damper, a law of the user's own, or a damper at no wheel.
     """
     if not composition.dampers:
         raise ConfigurationError("diagnose: the car has no damper; give a car with dampers")
@@ -52,20 +54,20 @@ def require_passive(composition: Composition) -> None:
 
 
 def drawn_damper(nominal: Damper, factor: float, bend: float, rebound: float, friction: float) -> Damper:
-    """Return a damper with a changed force, as a table.
+    """Return a damper with another force over velocity.
 
     Args:
         nominal: damper of the car that is not worn.
         factor: f, force at v0 over nominal [-].
         bend: exponent p [-]: above 0 progressive, below 0 degressive.
-        rebound: a, share of rebound over that of compression [-].
+        rebound: a, ratio of rebound and compression [-].
         friction: friction over nominal [-].
     """
     curve = damper_curve(nominal)
-    rest = float(curve.force(0.0))
+    preload = float(curve.force(0.0))
     one_side = np.geomspace(0.02, FASTEST, POINTS)
     velocity = np.concatenate([-one_side[::-1], [0.0], one_side])
-    force = (curve.force(velocity) - rest) * factor
+    force = (curve.force(velocity) - preload) * factor
     force = force * np.where(velocity > 0.0, rebound**0.5, rebound**-0.5)
     force = force * (np.maximum(np.abs(velocity), one_side[0]) / REFERENCE_VELOCITY) ** bend
     slope = outer_slope(nominal)
@@ -74,7 +76,7 @@ def drawn_damper(nominal: Damper, factor: float, bend: float, rebound: float, fr
     half = velocity.size // 2
     force = np.concatenate([-np.cumsum(rises[:half][::-1])[::-1], [0.0], np.cumsum(rises[half:])])
     velocity = np.concatenate([[-2.0 * FASTEST], velocity, [2.0 * FASTEST]])
-    force = np.concatenate([[force[0] - slope * FASTEST], force, [force[-1] + slope * FASTEST]]) + rest
+    force = np.concatenate([[force[0] - slope * FASTEST], force, [force[-1] + slope * FASTEST]]) + preload
     stribeck = None if nominal.stribeck_friction is None else nominal.stribeck_friction * friction
     return replace(
         nominal,
@@ -84,6 +86,17 @@ def drawn_damper(nominal: Damper, factor: float, bend: float, rebound: float, fr
         coulomb_friction=nominal.coulomb_friction * friction,
         stribeck_friction=stribeck,
         tested=None,
+    )
+
+
+def with_static_friction(damper: Damper, ratio: float) -> Damper:
+    """Return a damper with Stribeck friction, whose limit at rest is larger by a ratio and falls within `FALL`."""
+    return replace(
+        damper,
+        friction_law="stribeck",
+        stribeck_friction=ratio * damper.coulomb_friction,
+        stribeck_velocity=FALL,
+        stribeck_exponent=1.0,
     )
 
 

@@ -2,8 +2,8 @@
 
 Cars with other dampers, tyres, springs, mounts and loads drive over random roads (`drawn_car`, `simulated_drives`) with
 the sensors, the speed and the length of the record. The features of the record (`features`) are compared with theirs
-(`learned`): a regression gives each unknown, the drives left out give the distribution of its error, and the distance
-of the record from all drives says whether it can be of this car at all.
+(`learned`): a regression estimates each unknown, the drives left out have the distribution of its error, and a record
+that is far from all drives is refused.
 """
 
 from __future__ import annotations
@@ -34,18 +34,17 @@ SPEED_RATIO = 1.12
 """Largest ratio of the speeds that cars with one rolling speed of the tyres are used for."""
 
 USUAL, UNLIKE, WIDENING = 1.5, 3.5, 0.5
-"""How unlike the simulated drives a record may be, see `Learned`: up to the first, as 94 % of the drives, intervals are
-not widened; beyond the second, as 0.3 % of them, it is refused; between, intervals grow by exp(WIDENING) for each."""
+"""Unlikeness of a record, see `Learned`: up to the first (94 % of the drives) intervals are not widened, beyond the
+second (0.3 %) the record is refused, and between both intervals grow by exp(WIDENING) a unit."""
 
 LEVEL_MARGIN = 0.3
-"""Margin of the mean logarithm of the densities of a record beyond those of the simulated drives [-]: a gain of the
-sensor of 1.2."""
+"""Largest excess of the mean log density of a record over all simulated drives [-]: a gain of 1.2 of the sensor."""
 
 MOST = 12
-"""Largest number of channels: with more, their features outnumber what the simulated drives can teach."""
+"""Largest number of channels: a thousand drives are too few for the features of more channels."""
 
 ROUGHER, NARROWER = 0.6, 0.9
-"""log10 of the ratio of two classes of roads; ratio of widths below which something tells more [-]."""
+"""log10 of the ratio of two classes of roads; largest ratio of widths that is printed [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -58,8 +57,8 @@ class Diagnostics:
         highest: highest usable frequency of the record [Hz].
         free: points whose horizontal axes have any direction.
         drives: simulated drives.
-        learned: what they tell.
-        at_wheels: what sensors at all wheels and strut tops would tell; None for a car without such points.
+        learned: regression of the unknowns over the features.
+        at_wheels: the same regression with sensors at all wheels and strut tops; None for a car without these points.
     """
 
     car: str
@@ -129,7 +128,7 @@ class Diagnostics:
         return bands.features(pieces, related_pairs(self.channels), rows_of_points(self.channels, self.free))
 
     def diagnosis(self, record: DriveRecord, parts: Parts, shown: Sequence[str] = ("dampers",)) -> CarDiagnosis:
-        """Return what a record tells.
+        """Return the diagnosis of a record.
 
         Raises:
             DataError: the record is unlike all simulated drives.
@@ -161,7 +160,7 @@ class Diagnostics:
         )
 
     def _more(self, features: Vector) -> dict[str, float]:
-        """Return what would narrow the intervals of the dampers: name to the ratio of the widths, below 1."""
+        """Return changes of the test that narrow the intervals of the dampers, with the ratio of widths, below 1."""
         dampers = [number for number, name in enumerate(self.drives.names) if name.startswith("damper ")]
         rougher = np.mean([self.learned.rougher(features, damper, ROUGHER) for damper in dampers])
         more = {"a road one class rougher": float(rougher)}
@@ -178,13 +177,13 @@ class Diagnostics:
             if beyond > LEVEL_MARGIN:
                 # The densities are squares.
                 factor = np.exp(0.5 * beyond)
-                what, roads, remedy = (
+                comparison, roads, remedy = (
                     ("rougher", "class D", "drive on a smoother road") if rougher else
                     ("smoother", "class A", "drive on a rougher road, and not at a standstill")
                 )  # fmt: skip
                 raise DataError(
-                    f"{record.name}: its accelerations are {factor:.3g} times {what} than in any simulated drive up to "
-                    f"roads of {roads}; check the units (--unit), or {remedy}"
+                    f"{record.name}: its accelerations are {factor:.3g} times {comparison} than in any simulated drive "
+                    f"up to roads of {roads}; check the units (--unit), or {remedy}"
                 )
 
     def _farthest(self, features: Vector) -> str:
@@ -196,7 +195,7 @@ class Diagnostics:
 
 
 def wheel_sensors(car: Car) -> list[str]:
-    """Return the vertical accelerations of the points at wheels and strut tops; none of a car without both."""
+    """Return the vertical accelerations at wheels and strut tops; [] for a car without these points."""
     names = [f"{point}_{wheel}_acc_z" for point in ("knuckle", "damper_top") for wheel in car.vehicle.wheels]
     return names if {*names} <= {*car.vehicle.acceleration_channels} else []
 
@@ -220,12 +219,12 @@ def diagnose_car(
     Args:
         car: car that is not worn.
         record: measurement file of any format, with accelerations at points of the car.
-        speed: speed [km/h], two speeds between which it lies, or "channel:NAME".
+        speed: speed [km/h], lower and upper speed, or "channel:NAME".
         channels: channel of the model to channel of the file; by default equal names.
         choice: units, times and excerpt of the file.
         inverted: channels measured in the opposite direction.
-        free: points with a device in any direction, for example ("seat_rail",); its axes x, y and z are those of the
-            device, and the record contains gravity.
+        free: points with a device in any direction, for example ("seat_rail",); x, y and z are axes of the device,
+            and the record contains gravity.
         parts: groups of unknowns for the table, of `GROUPS`.
         drives: number of simulated drives; by default 960, and 1440 for a range of speeds.
         seed: seed of the simulated drives.
@@ -262,7 +261,7 @@ def _main_channels(car: Car, drive: DriveRecord) -> DriveRecord:
     """Return a record with at most `MOST` channels: those at wheels and strut tops and on the seat rail.
 
     Raises:
-        ConfigurationError: it has other ones, and more.
+        ConfigurationError: more channels at other points.
     """
     if len(drive.channels) <= MOST:
         return drive

@@ -21,10 +21,10 @@ SUMMARY, TABLE, PICTURE = "diagnosis.json", "diagnosis.csv", "diagnosis.png"
 
 
 def contents(diagnosis: CarDiagnosis, *, figures: bool = True) -> dict[str, Content]:
-    """Return the content of each file by its name.
+    """Return the file contents by file name.
 
     Args:
-        diagnosis: what a record tells.
+        diagnosis: result of `diagnose_car`.
         figures: False leaves out the picture.
     """
     files: dict[str, Content] = {

@@ -64,7 +64,7 @@ class DrawnRoad:
         slow = np.fft.rfft(rng.standard_normal(size)) * np.exp(-((SLOW * frequency) ** 2))
         change = np.fft.irfft(slow, size)
         modulation = np.exp(self.variation * change / np.std(change))
-        # The level is that of the road as it is driven.
+        # The mean square of the road has the stated level.
         modulation /= np.sqrt(np.mean(modulation**2))
         # White noise of unit one-sided density has the variance rate/2.
         sources = np.fft.rfft(rng.standard_normal((2, size)) * modulation * np.sqrt(0.5 * rate), axis=1)[:, lines]
@@ -73,9 +73,9 @@ class DrawnRoad:
         bent = (frequency[lines] / self.speed / REFERENCE) ** (1.0 - 0.5 * self.waviness)
         spectrum = np.zeros((len(wheels), frequency.size), dtype=np.complex128)
         spectrum[:, lines] = np.einsum("wsm,sm->wm", shaped, sources) * bent
-        heights: Vector = np.fft.irfft(spectrum, size, axis=1)[:, :samples]
+        tracks: Vector = np.fft.irfft(spectrum, size, axis=1)[:, :samples]
         return Signal(
             time=uniform_time(samples=samples, timestep=1.0 / rate),
-            displacement=dict(zip(wheels, heights, strict=True)),
+            displacement=dict(zip(wheels, tracks, strict=True)),
             source="drawn road",
         )

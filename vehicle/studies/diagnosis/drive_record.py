@@ -43,7 +43,7 @@ OFFSET = 0.15
 """Largest deviation of the mean of a device from gravity [-]: offsets of cheap sensors reach 0.1 g."""
 
 SHORTEST, LONGEST = 16.0, 60.0
-"""Least and most time of a record that is used [s]: seven windows, and what a minute tells."""
+"""Least and most time of a record that is used [s]: seven windows, and a minute."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -57,7 +57,7 @@ class DriveRecord:
         rate: sampling rate [Hz].
         highest: highest usable frequency [Hz].
         speeds: least and greatest speed [m/s].
-        speed: speed at the samples [m/s], (n,); None for a stated speed.
+        speed: speed at the samples [m/s], (n,); None if the user states the speed.
         notices: messages on the record.
     """
 
@@ -139,7 +139,7 @@ def read_drive(
     if chosen.quantities["speed"] != "velocity":
         raise DataError(
             f"{file}: --speed {speed}: the channel is no velocity but {chosen.quantities['speed']}; choose another "
-            "one, or set --unit speed=km/h"
+            "channel, or set --unit speed=km/h"
         )
     at_samples = np.interp(record.time, chosen.time, chosen.values["speed"])
     return replace(drive, speed=at_samples, speeds=(float(at_samples.min()), float(at_samples.max())))
@@ -165,8 +165,8 @@ def upright(record: DriveRecord, point: str) -> DriveRecord:
     length = float(np.linalg.norm(mean))
     if abs(length / STANDARD_GRAVITY - 1.0) > OFFSET:
         raise DataError(
-            f"{record.name}: the mean of {point} is {length:.3g} m/s2, but gravity shows where a device in any direction "
-            f"has its vertical; give a record with gravity ({STANDARD_GRAVITY:.3g} m/s2), or leave --free out"
+            f"{record.name}: the mean of {point} is {length:.3g} m/s2, but gravity shows the vertical of a device in "
+            f"any direction; give a record with gravity ({STANDARD_GRAVITY:.3g} m/s2), or leave --free out"
         )
     x, y, up = mean / length
     if up < -1.0 + 1e-9:

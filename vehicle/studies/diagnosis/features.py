@@ -1,7 +1,7 @@
 """Features of a record: logarithms of spectral densities in bands, and coherencies of pairs of channels.
 
-Welch spectra S_ij of Hann windows are averaged over each part of the record and each band. The features are log S_ii in
-narrow bands, and the real and imaginary parts of S_ij/sqrt(S_ii S_jj) in wide ones.
+Welch spectra S_ij of Hann windows are averaged over each part of the record and each band. Features are log S_ii in
+narrow bands, and the real and imaginary parts of S_ij/sqrt(S_ii S_jj) in wide bands.
 """
 
 from __future__ import annotations
@@ -91,21 +91,21 @@ class Bands:
         power = np.einsum("aaf->af", spectra).real
         if np.any(power @ self.narrow.T <= 0.0):
             raise DataError("diagnose: a channel of the record is at rest; leave it out with --map")
-        found = [np.log(power @ self.narrow.T).ravel()]
+        densities = np.log(power @ self.narrow.T).ravel()
         in_bands = spectra @ self.wide.T
         level = np.sqrt(np.einsum("aab->ab", in_bands).real)
         first, second = np.array(pairs, dtype=int).reshape(-1, 2).T
         coherency = in_bands[first, second] / (level[first] * level[second])
-        return np.concatenate([*found, coherency.real.ravel(), coherency.imag.ravel()])
+        return np.concatenate([densities, coherency.real.ravel(), coherency.imag.ravel()])
 
     def _turned(self, spectra: Complex, axes: tuple[int, int, int]) -> Complex:
-        """Return the cross spectra with the horizontal axes of a point turned to the principal ones."""
-        x, y, z = axes
+        """Return the cross spectra with the horizontal axes of a point turned to the principal axes."""
+        x, y, _ = axes
         used = self.narrow.sum(axis=0) > 0.0
-        together = spectra[np.ix_(axes, axes)][:, :, used].sum(axis=2).real
-        _, principal = np.linalg.eigh(together[:2, :2])
+        cross = spectra[np.ix_(axes, axes)][:, :, used].sum(axis=2).real
+        _, principal = np.linalg.eigh(cross[:2, :2])
         turn = principal[:, ::-1].T
-        turn = turn * np.where(turn @ together[:2, 2] < 0.0, -1.0, 1.0)[:, None]
+        turn = turn * np.where(turn @ cross[:2, 2] < 0.0, -1.0, 1.0)[:, None]
         whole = np.eye(len(spectra))
         whole[np.ix_((x, y), (x, y))] = turn
         return np.asarray(np.einsum("ab,bcf,dc->adf", whole, spectra, whole))
@@ -123,8 +123,8 @@ def _weights(frequency: Vector, highest: float, count: int) -> Vector:
 def related_pairs(channels: Sequence[str]) -> list[tuple[int, int]]:
     """Return the pairs of channels at one point or at one wheel.
 
-    The motion of a strut top over that of its knuckle shows the force of the damper between them, and two axes of a
-    point how the car turns. Other pairs add more noise than knowledge: with them eight sensors do worse.
+    A strut top and a knuckle show the damper between them, two axes of a point the rotation of the car. Other pairs add
+    more noise than knowledge: with them the errors of eight sensors are larger.
     """
     points = [channel.rpartition("_acc_")[0] for channel in channels]
     wheels = [point.rpartition("_")[2] for point in points]

@@ -1,4 +1,4 @@
-"""What a record tells of an unknown, learned from simulated drives: a regression, and the residuals of drives left out.
+"""Posterior of unknowns learned from simulated drives: a regression, and the residuals of drives left out.
 
 Gaussian process regression of each unknown y over the features x, with standardised features and unknowns,
 
@@ -6,13 +6,13 @@ Gaussian process regression of each unknown y over the features x, with standard
 
 p features. The noise l is that with the smallest error of drives left out. Drives with a common road or car are left
 out together: the residuals of a block b are A_bb^-1 a_b, with A = (K + l I)^-1 and a = A y. So are the distances d^2 =
-(x - m)' C^-1 (x - m) of a record from the drives, with the covariance C of the others. How unlike the drives a record
-is, is ln d^2 less its usual value on a road of this level, over its standard deviation: dampers that stick now and then
+(x - m)' C^-1 (x - m) of a record from the drives, with the covariance C of the others. The unlikeness of a
+record is ln d^2 less its usual value on a road of this level, over its standard deviation: dampers that stick at times
 scatter more.
 
 The residuals r of drives that were left out are the distribution of the error. Their scale depends on the record,
-ln s = b0 + b1 u1 + ..., fitted by maximum likelihood over the predicted values; with the weights of drives whose
-predictions are near that of the record, y(x) + s(x) r_j/s_j are draws of the unknown.
+ln s = b0 + b1 u1 + ..., fitted by maximum likelihood over the predicted values; y(x) + s(x) r_j/s_j are
+draws of the unknown, and drives with predictions near y(x) have large weights.
 
 Sources: Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, equations 2.25 and 5.12; Beaumont, Zhang
 and Balding, Genetics 162 (2002) 2025, for the regression of simulations; Vovk, Gammerman and Shafer, Algorithmic
@@ -63,7 +63,7 @@ class Posterior:
         return float(self.weights @ (self.draws < limit))
 
     def quantile(self, share: float) -> float:
-        """Return the value below which the unknown lies with a probability."""
+        """Return the quantile of a probability."""
         order = np.argsort(self.draws)
         cumulated = np.cumsum(self.weights[order]) - 0.5 * self.weights[order]
         return float(np.interp(share, cumulated, self.draws[order]))
@@ -85,30 +85,30 @@ class Learned:
     Args:
         features: features of the simulated drives; (n, p).
         values: unknowns of the drives, the level of the road last; (n, q).
-        together: number of successive drives that are left out together.
+        block: number of successive drives that are left out as one.
     """
 
-    def __init__(self, features: Vector, values: Vector, together: int) -> None:
+    def __init__(self, features: Vector, values: Vector, block: int) -> None:
         self.center, self.scale = features.mean(axis=0), features.std(axis=0)
         self.x = (features - self.center) / self.scale
         self.low, self.high = values.min(axis=0), values.max(axis=0)
         self.mean, self.prior = values.mean(axis=0), values.std(axis=0)
         y = (values - self.mean) / self.prior
         eigenvalues, vectors = np.linalg.eigh(self._kernel(self.x))
-        blocks = [slice(first, first + together) for first in range(0, len(y), together)]
+        blocks = [slice(first, first + block) for first in range(0, len(y), block)]
         error = np.full(y.shape[1], np.inf)
         self.coefficients, self.left_out, self.noise = np.zeros_like(y), np.zeros_like(y), np.zeros(y.shape[1])
         for noise in NOISES:
             inverse = (vectors / (eigenvalues + noise)) @ vectors.T
             solved = inverse @ y
-            residuals = np.concatenate([np.linalg.solve(inverse[block, block], solved[block]) for block in blocks])
+            residuals = np.concatenate([np.linalg.solve(inverse[rows, rows], solved[rows]) for rows in blocks])
             mean_square = np.mean(residuals**2, axis=0)
             better = mean_square < error
             error[better], self.noise[better] = mean_square[better], noise
             self.coefficients[:, better], self.left_out[:, better] = solved[:, better], residuals[:, better]
         self.predicted = y - self.left_out
         distances = np.zeros(len(y))
-        folds = np.arange(len(y)) // together % FOLDS
+        folds = np.arange(len(y)) // block % FOLDS
         for fold in range(FOLDS):
             inside = folds != fold
             distances[~inside] = _distance(self.x[inside], self.x[~inside])
@@ -126,8 +126,8 @@ class Learned:
 
     def _terms(self, predicted: Vector, unknown: int) -> Vector:
         """Return the terms u of the scale of an unknown, from the predictions of all unknowns (m, q); (m, terms)."""
-        own, level = predicted[:, unknown], predicted[:, -1]
-        return np.column_stack([np.ones(len(own)), own, own**2, level, level**2])
+        y, level = predicted[:, unknown], predicted[:, -1]
+        return np.column_stack([np.ones(len(y)), y, y**2, level, level**2])
 
     def _fit_scale(self, unknown: int) -> Vector:
         """Return the coefficients b of ln s, which minimise the mean of ln s + r^2/(2 s^2)."""
@@ -143,14 +143,14 @@ class Learned:
         return np.asarray(scipy.optimize.minimize(cost, start, jac=True, method="BFGS").x)
 
     def unlikeness(self, features: Vector) -> float:
-        """Return how unlike the drives a record is; `unlike` has that of the drives left out."""
+        """Return the unlikeness of a record; `unlike` are the values of the drives left out."""
         x = (features - self.center)[None] / self.scale
         level = np.clip(self._kernel(x) @ self.coefficients[:, -1], *_range(self.predicted[:, -1]))
         beyond = np.log(_distance(self.x, x)) - _of_level(level) @ self.usual
         return float(beyond[0]) / self.spread
 
     def rougher(self, features: Vector, unknown: int, more: float) -> float:
-        """Return the scale of the error of an unknown on a rougher road over that of the record.
+        """Return the ratio of the errors of an unknown on a rougher road and on the road of the record.
 
         Args:
             features: features of the record; (p,).
@@ -164,7 +164,7 @@ class Learned:
         return float(np.exp(change[0]))
 
     def posteriors(self, features: Vector, widened: float = 1.0) -> list[Posterior]:
-        """Return what a record tells of each unknown.
+        """Return the posterior of each unknown.
 
         Args:
             features: features of the record; (p,).
@@ -174,7 +174,7 @@ class Learned:
         deviations = self.predicted.std(axis=0)
         # Distances of the predictions of the level.
         of_level = ((self.predicted[:, -1] - predicted[0, -1]) / (NEAR * deviations[-1])) ** 2
-        found = []
+        posteriors = []
         for unknown, scales in enumerate(self.scales):
             at_drives = self._terms(self.predicted, unknown)
             terms = np.clip(self._terms(predicted, unknown)[0], at_drives.min(axis=0), at_drives.max(axis=0))
@@ -184,8 +184,8 @@ class Learned:
             weights = np.exp(exponent - exponent.max())
             draws = predicted[0, unknown] + ratio * self.left_out[:, unknown]
             draws = np.clip(self.mean[unknown] + self.prior[unknown] * draws, self.low[unknown], self.high[unknown])
-            found.append(Posterior(draws=draws, weights=weights / weights.sum(), prior=float(self.prior[unknown])))
-        return found
+            posteriors.append(Posterior(draws=draws, weights=weights / weights.sum(), prior=float(self.prior[unknown])))
+        return posteriors
 
 
 def _of_level(level: Vector) -> Vector:

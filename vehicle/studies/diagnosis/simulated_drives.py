@@ -40,7 +40,7 @@ TOGETHER = USES * LANES
 """Successive drives that share cars or a road, and are left out together."""
 
 SPEED = 1.02
-"""Ratio of the speed over the one stated, and of the clock."""
+"""Ratio of true and stated speed."""
 
 NOISE, GAIN = (0.005, 0.05), 1.03
 """Noise of a sensor [m/s2], RMS at 250 Hz; ratio of its gain."""
@@ -100,16 +100,16 @@ def simulated_drives(
     values, names = list[list[float]](), tuple[str, ...]()
     groups = USES * -(-count // TOGETHER)
     for group in range(groups):
-        place = group // USES % len(priors)
-        prior, (slowest, fastest) = priors[place], speeds[place]
+        number = group // USES % len(priors)
+        prior, (slowest, fastest) = priors[number], speeds[number]
         if group % USES == 0:
             drawn = [prior.draw(rng) for _ in range(LANES)]
         cars = [prior.with_dampers(car, rng) for car in drawn]
         road = drawn_road(prior.car, float(rng.uniform(slowest, fastest)) * SPEED ** rng.uniform(-1.0, 1.0), rng)
         histories = drive(cars, road, prior.car, channels, duration, rng)
         for car, samples in zip(cars, histories, strict=True):
-            for found, chosen, related in zip(features, rows, pairs, strict=True):
-                found.append(bands.features([samples[chosen]], *related))
+            for table, chosen, related in zip(features, rows, pairs, strict=True):
+                table.append(bands.features([samples[chosen]], *related))
             of_road = {"waviness": road.waviness, "speed": road.speed, "level": float(np.log10(road.level))}
             unknowns = {**car.values, **of_road}
             names = tuple(unknowns)
