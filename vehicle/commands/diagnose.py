@@ -56,7 +56,7 @@ class DiagnoseSettings(Settings):
         required=True,
     )
     free: tuple[str, ...] = setting(
-        "point with a device in any direction, for example seat_rail for a phone: its axes are those of the device, "
+        "point with a device in any direction, for example seat_rail for a phone: x, y and z are axes of the device, "
         "and gravity in the record shows the vertical. May be repeated",
         (),
         action="append",
@@ -129,7 +129,7 @@ def _job(settings: DiagnoseSettings, console: Console) -> None:
             inverted=settings.measured.turned,
             free=settings.free,
             parts=settings.parts.split(","),
-            drives=settings.drives,
+            count=settings.drives,
             seed=settings.seed,
             progress=progress,
         )

@@ -25,7 +25,7 @@ class SteadyCar:
             record: measurement file with accelerations at points of the car.
             speed: speed [km/h], lower and upper speed, or "channel:NAME".
             settings: `channels` {channel of the car: channel of the file}, `choice`, `inverted`, `free`, `parts`,
-                `drives`, `seed`, `progress`; see `vehicle.studies.diagnosis.diagnosis.diagnose_car`.
+                `count`, `seed`, `progress`; see `vehicle.studies.diagnosis.diagnosis.diagnose_car`.
         """
         return HANDED["diagnose_car"](self, record, speed, **settings)
 

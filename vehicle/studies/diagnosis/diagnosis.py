@@ -100,10 +100,11 @@ class Diagnostics:
         edges = np.geomspace(*speeds, pieces + 1)
         ranges = [(float(low), float(high)) for low, high in pairwise(edges)]
         priors = [CarPrior(car, round(float(np.sqrt(low * high)), 2)) for low, high in ranges]
-        drives = simulated_drives(
+        at_wheels = wheel_sensors(car)
+        simulated = simulated_drives(
             priors,
             ranges,
-            [channels, wheel_sensors(car)],
+            [channels, at_wheels] if at_wheels else [channels],
             highest=highest,
             free=free,
             count=count or (DRIVES if pieces == 1 else MORE_DRIVES),
@@ -116,9 +117,9 @@ class Diagnostics:
             channels=tuple(channels),
             highest=highest,
             free=tuple(free),
-            drives=drives,
-            learned=Learned(drives.features[0], drives.values, TOGETHER),
-            at_wheels=Learned(drives.features[1], drives.values, TOGETHER) if wheel_sensors(car) else None,
+            drives=simulated,
+            learned=Learned(simulated.features[0], simulated.values, TOGETHER),
+            at_wheels=Learned(simulated.features[1], simulated.values, TOGETHER) if at_wheels else None,
         )
 
     def features(self, record: DriveRecord, parts: Parts) -> Vector:
@@ -210,7 +211,7 @@ def diagnose_car(
     inverted: Collection[str] = (),
     free: Sequence[str] = (),
     parts: Sequence[str] = ("dampers",),
-    drives: int | None = None,
+    count: int | None = None,
     seed: int = 1,
     progress: Callable[[float], None] | None = None,
 ) -> CarDiagnosis:
@@ -226,7 +227,7 @@ def diagnose_car(
         free: points with a device in any direction, for example ("seat_rail",); x, y and z are axes of the device,
             and the record contains gravity.
         parts: groups of unknowns for the table, of `GROUPS`.
-        drives: number of simulated drives; by default 960, and 1440 for a range of speeds.
+        count: number of simulated drives; by default 960, and 1440 for a range of speeds.
         seed: seed of the simulated drives.
         progress: called with the share that is done.
 
@@ -250,7 +251,7 @@ def diagnose_car(
         usable.seconds,
         highest=min(drive.highest, 0.4 * RATE),
         free=free,
-        count=drives,
+        count=count,
         seed=seed,
         progress=progress,
     )

@@ -82,7 +82,7 @@ class CarPrior:
         self.tyres: dict[str, tuple[str, float, float]] = {}
         mounts = list[tuple[str, str, str, Point]]()
         for connection in composition.connections:
-            # The last table is that of the side.
+            # The last table belongs to the side.
             law, path = connection.law, connection.tables[-1] if connection.tables else ""
             if isinstance(law, Tyre):
                 wheel = connection.carrier.removeprefix("plate_")
