@@ -33,8 +33,8 @@ def contents(diagnosis: CarDiagnosis, *, figures: bool = True) -> dict[str, Cont
     }
     if figures:
         shapes = [_shape(diagnosis, wheel) for wheel in diagnosis.wheels]
-        caption = f"{diagnosis.answer} Bars: 90 % intervals; dashed: {100 * WORN:.0f} % of nominal."
-        title = f"{diagnosis.car}: dampers by {diagnosis.record}"
+        caption = f"points: medians; bars: 90 % intervals; dashed: {100.0 * WORN:.0f} % of the nominal force"
+        title = f"Dampers of {diagnosis.car} by {diagnosis.record}"
         files[PICTURE] = partial(plot_diagnosis, shapes=shapes, limit=WORN, title=title, caption=caption)
     return files
 

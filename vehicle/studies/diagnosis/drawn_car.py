@@ -129,10 +129,10 @@ class CarPrior:
             overrides |= {path: factor * value for path, value in pairs}
             values[name] = factor
         of_axle = {path: _ratio(MOUNT, rng) for path in dict.fromkeys(path for _, path, _, _ in self.mounts)}
-        for name, of_both, path, stiffness in self.mounts:
+        for name, of_both, path, constants in self.mounts:
             values[f"mount {name}"] = factor = of_axle[of_both] * _ratio(MOUNT_SIDES, rng)
-            pairs = zip(AXES, stiffness, strict=True)
-            overrides |= {f"{path}.stiffness.{axis}": factor * value for axis, value in pairs if value > 0.0}
+            by_axis = zip(AXES, constants, strict=True)
+            overrides |= {f"{path}.stiffness.{axis}": factor * value for axis, value in by_axis if value > 0.0}
         values["body"] = _ratio(BODY, rng)
         overrides["body.mass"] = values["body"] * self.car.vehicle.body.mass
         for name, (_, _, heaviest) in LOADS.items():

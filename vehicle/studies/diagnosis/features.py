@@ -76,7 +76,8 @@ class Bands:
         Raises:
             DataError: a channel is at rest.
         """
-        total, count = np.zeros(0), 0
+        total: Complex = np.zeros(0, dtype=np.complex128)
+        count = 0
         hann = np.hanning(self.samples + 1)[:-1]
         for part in parts:
             cut = np.lib.stride_tricks.sliding_window_view(part, self.samples, axis=1)[:, :: self.samples // 2]
@@ -85,7 +86,7 @@ class Bands:
             cross = np.einsum("asf,bsf->abf", lines, lines.conj())
             total = cross if count == 0 else total + cross
             count += cut.shape[1]
-        spectra = total * (2.0 / (self.rate * count * np.sum(hann**2)))
+        spectra: Complex = total * (2.0 / (self.rate * count * np.sum(hann**2)))
         for axes in free:
             spectra = self._turned(spectra, axes)
         power = np.einsum("aaf->af", spectra).real
