@@ -79,7 +79,7 @@ ROOMS: dict[str, set[str]] = {
     | {"rendering", "simulation", "targets", "version"},
     "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
     "page": {"analysis", "car", "excitation", "figures", "fmu", "formats", "laws", "linear", "output", "parameters"}
-    | {"records", "reduced", "rendering", "report", "simulation", "targets"},
+    | {"records", "reduced", "rendering", "report", "simulation", "steady", "targets"},
     "bench": {"analysis", "car", "excitation", "figures", "formats", "linear", "output", "page"}
     | {"parameters", "reduced", "rendering", "report", "shapes", "threads"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},

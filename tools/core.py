@@ -36,7 +36,7 @@ WARNINGS = ("-Wall", "-Wextra", "-Wshadow", "-Werror", "-Wno-psabi", "-fno-sanit
 MARCH = tuple(name for name in VARIANTS if name != "outputs.c")
 SPECTRA = "spectra.c"
 FMI = ("fmi2.c", "fmi3.c")
-PAGE = ("web_page.c", "web_spectra.c")
+PAGE = ("web_page.c", "web_spectra.c", "web_levels.c")
 
 
 class Target(NamedTuple):

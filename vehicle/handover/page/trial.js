@@ -80,7 +80,7 @@
     clearTimeout(timer);
     if (busy) {
       waiting = task;
-      if (busy === "response") worker.postMessage({ task: "cancel" });
+      if (busy === "response" || busy === "levels") worker.postMessage({ task: "cancel" });
       return;
     }
     busy = task;
@@ -93,14 +93,14 @@
     if (error) {
       byId("words").textContent = `These settings cannot be run: ${error}.`;
     } else if (task === "record") {
-      now = { settings: asked, record: result, motion: null, response: null };
+      now = { settings: asked, record: result, motion: null, response: null, levels: null };
       before ??= now;
       show();
     } else if (result && same(now.settings, asked)) {
       for (const run of [now, before]) if (same(run.settings, asked)) run[task] = task === "motion" ? { ...result, steps: data.picture.steps } : result;
       show();
     }
-    const next = { record: "motion", motion: data.frf ? "response" : null }[task];
+    const last = data.levels ? "levels" : null, next = { record: "motion", motion: data.frf ? "response" : last, response: last }[task];
     if (waiting) request(waiting);
     else if (next && !error) timer = setTimeout(() => request(next), task === "record" ? PAUSE : 0);
   };
@@ -148,8 +148,8 @@
     byId("table").replaceChildren(head, body);
   }
 
-  // Curves in a canvas: [x, y, colour, width]; bands: [x, low, high, colour].
-  function draw(id, title, curves, axes, bands = []) {
+  // Curves in a canvas: [x, y, colour, width, dashes]; bands: [x, low, high, colour]; paint: draws below them.
+  function draw(id, title, curves, axes, bands = [], paint = null) {
     const canvas = byId(id), ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
     if (!width || !height) return;
     canvas.width = Math.round(width * ratio);
@@ -178,6 +178,7 @@
     }
     pen.save();
     pen.beginPath(); pen.rect(left, top, right - left, bottom - top); pen.clip();
+    paint?.(pen, across, down);
     for (const [x, low, high, colour] of bands) {
       pen.fillStyle = colour;
       pen.beginPath();
@@ -186,8 +187,9 @@
       pen.fill();
     }
     pen.lineJoin = "round";
-    for (const [x, y, colour, thick] of curves) {
+    for (const [x, y, colour, thick, dashes] of curves) {
       pen.strokeStyle = colour;
+      pen.setLineDash(dashes ?? []);
       pen.lineWidth = thick;
       pen.beginPath();
       for (let i = 0; i < x.length; i++) pen.lineTo(across(x[i]), down(y[i]));
@@ -209,6 +211,27 @@
     const found = [];
     for (let k = Math.ceil(low / step); k * step <= high; k++) found.push(k * step);
     return found;
+  }
+
+  // Map of the first harmonic of the seat rail over frequency and level, with the levels at which dampers let go.
+  function showLevels() {
+    const { frequency, level, amplitude } = data.levels, mm = level.map((value) => 1000 * value), ends = (axis) => [axis[0], axis[axis.length - 1]];
+    const shown = [[before, GREY, 2.2], [now, RED, 1.4]].filter(([run]) => run.levels), latest = now.levels ?? before.levels, marked = 1000 * amplitude * settings.level;
+    if (!latest) return;
+    const sizes = latest.size.filter((value) => value > 0).map(Math.log10), low = Math.min(...sizes), span = Math.max(...sizes) - low;
+    const half = (axis) => Math.sqrt(axis[1] / axis[0]), [wide, tall] = [half(frequency), half(mm)];
+    const paint = (pen, across, down) => frequency.forEach((f, k) => mm.forEach((height, m) => {
+      const value = latest.size[k * mm.length + m];
+      if (!(value > 0)) return; // a hole: no result
+      const share = (Math.log10(value) - low) / span;
+      pen.fillStyle = `rgb(${[252, 253, 254].map((light, i) => Math.round(light + share * ([64, 128, 184][i] - light)))})`;
+      const [left, top] = [across(f / wide), down(height * tall)];
+      pen.fillRect(left, top, across(f * wide) - left + 0.6, down(height / tall) - top + 0.6);
+    }));
+    const lines = shown.flatMap(([run, colour, thick]) => run.levels.first.map((line) => [frequency, Array.from(line, (value) => 1000 * value), colour, thick]));
+    byId("levels-words").textContent = `Map: first harmonic of the seat rail, vertical, from ${short(10 ** low, 2)} (white) to ${short(10 ** (low + span), 2)} m/s² per m (blue); lines: a damper lets go; dashed: amplitude of this record.`;
+    draw("levels", "Seat rail over amplitude of the plates [mm] and Hz",
+      [...lines, [ends(frequency), [marked, marked], INK, 1, [5, 4]]], { x: ends(frequency), y: ends(mm), logX: true, logY: true }, [], paint);
   }
 
   const both = (of) => [[before, GREY, 2.2], [now, RED, 1.4]].map(([run, colour, thick]) => [...of(run), colour, thick]);
@@ -237,6 +260,7 @@
       draw("frf", data.road ? "FRF to the road [m/s² per m] over Hz; band: 2 standard errors" : "FRF [m/s² per m] over Hz; band: 2 standard errors",
         runs.map(([run, colour, thick]) => [run.response.frequency, run.response.magnitude, colour, thick]), { x: [1, 50], y: [top * 1e-3, top * 1.5], logX: true, logY: true }, bands);
     }
+    if (data.levels) showLevels();
     trialPicture.show(before.motion, now.motion);
     const { notices } = now.record, more = notices.length > 1 ? `; ${notices.length - 1} more` : "";
     byId("notices").textContent = notices.length ? `Outside the valid range: ${notices[0]}${more}.` : "";
@@ -249,5 +273,6 @@
   byId("checked").textContent = data.checked;
   window.addEventListener("resize", () => now && show());
   byId("frf").hidden = !data.frf;
+  byId("levels").hidden = !data.levels;
   request("record");
 })();

@@ -30,6 +30,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.handover.fmu.car_numbers import FRICTION, PARAMETERS, CarNumbers, friction_numbers, numbers_with
 from vehicle.handover.fmu.output_rows import Output, Watched, car_outputs, joined_rows, motion_rows, watched_outputs
 from vehicle.handover.page.car_sets import stepped_sliders
+from vehicle.handover.page.level_numbers import level_numbers
 from vehicle.handover.page.live_figures import figure_data, page_figures
 from vehicle.handover.page.moving_car import moving_picture, picture_rows, turning_parts
 from vehicle.handover.page.packed_numbers import byte_runs, packed, text
@@ -133,6 +134,7 @@ def trial_data(
         "decay": max(weighting(name).decay_s for name in contact.weightings),
         "factors": list(contact.comfort_factors),
         "sliders": [*_sliders(car, base, road), *stepped],
+        "levels": level_numbers(car, drive.signal),
         "roadClass": road and road.road_class,
         "road": drive.road is not None,
         "checked": f"Checked against MuJoCo while parts rotate by up to {number(np.degrees(angle), 2)} deg: {error}.",

@@ -6,6 +6,8 @@
 // on the shaker takes 12 s to settle, a car on rolling tyres has none. Range of the FRF [Hz]. Length of the moving picture
 // and time between two of its positions [s].
 const LINES = 4096, REALISATIONS = 4, SETTLING = { plates: 3, road: 2 }, LOWEST = 1, HIGHEST = 50, PICTURE = 6, POSITION = 0.01;
+// Samples of a period of levels, as web_levels.c, and accuracy of its forces, as `periodic_forces` of the program.
+const LEVEL_SAMPLES = 128, LEVEL_TOLERANCE = 1e-7;
 
 // Bytes from base 85, which packed_numbers.py writes, and deflate.
 const DIGITS = new Uint8Array(128);
@@ -234,6 +236,32 @@ class Trial {
     const first = Math.ceil(LOWEST / resolution), lines = Array.from({ length: last + 1 - first }, (_, k) => (first + k) * resolution);
     const [re, im, magnitude, error] = [0, 1, 2, 3].map((row) => this.numbers(places.results + 8 * (last * row + first - 1), lines.length));
     return { frequency: lines, re, im, magnitude, error };
+  }
+
+  // First harmonic of the seat rail over the level of all plates, and the level at which each damper lets go while the
+  // others stick. Nothing for another stiffness or speed than that of the run, or if a later message cancels it.
+  async levels(settings) {
+    this.cancelled = false;
+    const { data, module } = this, { numbers, laws, frequency, level } = data.levels, columns = 1 + laws.length, count = level.length;
+    if (data.sliders.some(({ id, values, value }) => values && settings[id] !== value)) return null;
+    this.plant ??= {
+      car: module.open_levels(this.at(new Float64Array((await bytesOf(numbers)).buffer)), this.transform(LEVEL_SAMPLES)),
+      curves: laws.map(({ curve }) => this.at(Float64Array.from(curve))),
+      level: this.at(Float64Array.from(level)),
+      value: module.reserve(8 * (count * columns + laws.length)),
+    };
+    const { car, curves, level: place, value } = this.plant, parameters = this.parametersOf(settings), size = new Float64Array(frequency.length * count);
+    const of = (damper, name) => parameters[data.names.length * damper + data.names.indexOf(name)], first = laws.map(() => new Float64Array(frequency.length));
+    laws.forEach(({ curve, viscous, full }, i) => module.set_law(car, i, curves[i], (curve.length - 1) / 2, of(i, "curve_scale"), viscous, of(i, "coulomb_friction"), full));
+    for (let k = 0; k < frequency.length; k++) {
+      await new Promise((done) => setTimeout(done));
+      if (this.cancelled) return null;
+      module.level_line(car, frequency[k], place, count, LEVEL_TOLERANCE, value);
+      const values = this.numbers(value, count * columns + laws.length);
+      for (let m = 0; m < count; m++) size[k * count + m] = values[m * columns];
+      first.forEach((line, i) => { line[k] = values[count * columns + i]; });
+    }
+    return { size, first };
   }
 }
 

@@ -44,8 +44,8 @@ def number(value: float | None, decimals: int = 0) -> str:
 
 
 SUPPORT_NOTE = (
-    "anti-dive, anti-lift and anti-squat hold for an axle that takes the whole brake or drive force; multiply "
-    "them by the share of the axle, which the vehicle file does not contain"
+    "anti-dive, anti-lift and anti-squat are those of an axle that takes the whole brake or drive force; with the "
+    "shares of the axles: --acceleration -3"
 )
 
 
@@ -56,11 +56,11 @@ FIGURES_NOTE = (
 
 
 def car_tables(data: CarData) -> list[TextTable]:
-    """Return the tables of a car: the whole car, its figures with their usual ranges, its axles, its headline
-    figures.
+    """Return the tables of a car: the whole car, its steady acceleration if it has one, its figures with their usual
+    ranges, its axles, its headline figures.
     """
-    tables = [_whole_car(data), _usual(data), _axles(data), figures_table(data.figures)]
-    return tables if data.steady is None else [*tables, _steady(data.steady)]
+    steady = [] if data.steady is None else [_steady(data.steady)]
+    return [_whole_car(data), *steady, _usual(data), _axles(data), figures_table(data.figures)]
 
 
 def car_text(data: CarData) -> str:

@@ -22,7 +22,7 @@ def car_section(car: Car) -> Markup:
     data = car.show()
     wire = car_wireframe(car.model)
     parameters = parameter_table(data.parameters, shortened=False)
-    whole, usual, axles, figures, *steady = car_tables(data)
+    whole, *steady, usual, axles, figures = car_tables(data)
     return fill(
         "car",
         figure=drawing(lambda path: plot_car(path, wire, data, SIZE), f"Drawing of {data.name} with dimensions"),
