@@ -97,7 +97,7 @@ def test_comfort_scatters_little_from_seed_to_seed(sedan):
 
 
 def test_unweighted_of_six_ten_and_thirty_seconds_agree(sedan):
-    """Within the errors that the runs state; both edge lines of the band count whole, which is 0.3 % at 6 s.
+    """Within the errors that the runs state; lines at the edges of the band count with their share.
 
     With 6001 samples in place of 6000 the line at 2 Hz was lost, and the value of 6 s was 1 % low.
     """

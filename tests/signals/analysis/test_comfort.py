@@ -17,7 +17,7 @@ def coloured(rng, runs, samples):
 
 
 def test_the_comfort_value_of_sines_is_their_rms():
-    xyz = [3 * np.sin(2 * np.pi * 5 * TIME), 4 * np.sin(2 * np.pi * 20 * TIME), 12 * np.cos(2 * np.pi * 50 * TIME)]
+    xyz = [3 * np.sin(2 * np.pi * 5 * TIME), 4 * np.sin(2 * np.pi * 20 * TIME), 12 * np.cos(2 * np.pi * 40 * TIME)]
     # outside the band: a slow heave, gravity and a whine
     xyz[2] = xyz[2] + 9.81 + 5 * np.sin(2 * np.pi * 1.0 * TIME) + np.sin(2 * np.pi * 90 * TIME)
     value = comfort_values(STEP, [xyz])

@@ -54,9 +54,20 @@ def test_band_rms_includes_only_lines_in_the_band():
 
 
 @pytest.mark.parametrize("frequency", [2.0, 50.0])
-def test_both_band_edges_belong_to_the_band(frequency):
+def test_a_line_on_an_edge_of_the_band_counts_half(frequency):
+    """Half of its cell is inside."""
     time = np.arange(10_000) * 1e-3
-    assert band_rms(1e-3, np.sin(2 * np.pi * frequency * time), (2.0, 50.0))[0] == pytest.approx(np.sqrt(0.5))
+    assert band_rms(1e-3, np.sin(2 * np.pi * frequency * time), (2.0, 50.0))[0] == pytest.approx(0.5, rel=1e-9)
+
+
+@pytest.mark.parametrize("samples", [6000, 10_000, 30_000, 7130])
+def test_a_flat_density_has_its_mean_square_over_the_width_of_the_band(samples):
+    """Lines of equal power every 1/T: the mean square is S (high - low) for any length; neighbouring bands add up."""
+    phases = np.exp(2j * np.pi * np.random.default_rng(1).random(samples // 2 + 1))
+    noise = np.fft.irfft(phases, samples) * np.sqrt(0.5 * samples / 1e-3)  # S = 1/Hz
+    squares = [band_rms(1e-3, noise, band)[0] ** 2 for band in ((2.0, 50.0), (2.0, 17.0), (17.0, 50.0))]
+    assert squares[0] == pytest.approx(48.0, rel=1e-9)
+    assert squares[1] + squares[2] == pytest.approx(squares[0], rel=1e-12)
 
 
 def test_slow_sampling_is_refused_with_the_rate_needed():

@@ -242,3 +242,10 @@ def test_the_slope_of_cams_is_that_of_the_road_that_rises():
 def test_refusals(change, message):
     with pytest.raises(ConfigurationError, match=message):
         IsoRoad(**{"level": 1e-4, "seed": 1, "track": TRACK, **change})
+
+
+def test_a_road_that_repeats_within_its_shortest_wave_is_refused():
+    """One sample of 0.02 m, as of --duration 2.001, holds no wave of at least 0.1 m."""
+    road = IsoRoad(level=1e-4, seed=1, track=TRACK)
+    with pytest.raises(ConfigurationError, match="less than its shortest wave of 0"):
+        road.height(0.0, 0.02, 1, "right", 18.0)

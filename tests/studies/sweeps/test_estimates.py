@@ -9,7 +9,9 @@ import pytest
 from vehicle import Car, optimise, parameter_effects, road, sobol, sweep
 from vehicle.commands.optimise import main as optimise_command
 from vehicle.commands.sweep import main as sweep_command
+from vehicle.engines.reduced.linear_twin import linear_twin
 from vehicle.errors import ConfigurationError
+from vehicle.runs.car import linear_part
 from vehicle.studies.optimisation.screening import best_rows
 
 FRICTION, VISCOUS = "front.damper.coulomb_friction", "rear.damper.viscous"
@@ -36,6 +38,26 @@ def test_each_car_of_a_sweep_has_its_estimate(sedan: Car):
     assert not any("slip" in name for name in table.units)
     assert {each["engine"] for each in table.rows()} == {"estimate"}
     assert "estimates without a run" in str(table)
+
+
+def test_many_cars_that_differ_in_the_same_parameters_are_estimated_by_ports(sedan: Car, monkeypatch):
+    """64 cars of tyres and friction: as by poles within 1e-4, in any order, and without the poles of a single car."""
+    tyre = "front.bushings.tyre.stiffness.z"
+    vary = {tyre: np.linspace(1.9e5, 2.4e5, 16).tolist(), FRICTION: [60.0, 70.0, 80.0, 90.0]}
+    solved: list[int] = []
+
+    def by_poles(*arguments, **options):
+        solved.append(1)
+        return linear_twin(*arguments, **options)
+
+    monkeypatch.setattr(linear_part, "linear_twin", by_poles)
+    found = sweep(sedan, vary, road("C", 80), estimate=True).column("weighted")
+    assert not solved
+    alone = [sedan.with_({tyre: vary[tyre][at], FRICTION: 70.0}).estimate(road("C", 80)) for at in (0, 15)]
+    assert len(solved) == 2
+    assert found[[1, 61]] == pytest.approx([each.values["weighted"] for each in alone], rel=1e-4)
+    backwards = {path: values[::-1] for path, values in vary.items()}
+    assert sweep(sedan, backwards, road("C", 80), estimate=True).column("weighted")[::-1].tolist() == found.tolist()
 
 
 def test_figures_of_mean_squares_are_those_of_runs(sedan: Car):

@@ -146,6 +146,11 @@ class CarMatrices:
                 run_outs.append((wheel, tuple(acting), tuple(value for pair in acting.values() for value in pair)))
         return tuple(run_outs)
 
+    @property
+    def forced(self) -> bool:
+        """True if forces or tyres of the car shake it on a level road too."""
+        return bool(self.coefficients.shape[1] or self.run_out)
+
     def __repr__(self) -> str:
         """One line."""
         return f"CarMatrices({len(self.system.mass)} coordinates, {len(self.dampers)} dampers)"

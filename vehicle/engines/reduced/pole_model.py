@@ -124,7 +124,7 @@ class PoleModel:
     @property
     def forced(self) -> bool:
         """True if forces or tyres of the car shake it on a level road too."""
-        return bool(self.applied.shape[1] or self.matrices.run_out)
+        return self.matrices.forced
 
     def without_forces(self) -> PoleModel:
         """Return the model without applied forces."""

@@ -25,6 +25,7 @@ from vehicle.arrays import Complex, Vector
 from vehicle.engines.reduced.linear_twin import LinearTwin
 from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.road_level import REFERENCE
+from vehicle.signals.analysis.samples import band_shares
 from vehicle.signals.analysis.weighting import weighting
 from vehicle.signals.excitation.iso_road import IsoRoad, Side, isotropic_coherence
 
@@ -134,8 +135,10 @@ def band_width(lines: Lines, band: tuple[float, float], duration: float | None =
         inside = np.minimum(edges[1:], high) - np.maximum(edges[:-1], low)
         cell = np.diff(edges)
         return np.asarray(lines.width * np.clip(inside, 0.0, None) / cell)
-    read = np.arange(int(np.ceil(low * duration - 1e-9)), int(high * duration + 1e-9) + 1) / duration
-    return np.asarray(lines.width * np.sum(np.sinc((lines.frequency[:, None] - read) * duration) ** 2, axis=1))
+    read = np.arange(int(low * duration), int(high * duration) + 2) / duration
+    shares = band_shares(read, 1.0 / duration, band)
+    leaked = np.sinc((lines.frequency[:, None] - read) * duration) ** 2
+    return np.asarray(lines.width * (leaked @ shares))
 
 
 def _cell_edges(lines: Lines) -> Vector:

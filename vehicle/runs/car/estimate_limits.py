@@ -10,8 +10,8 @@ import scipy
 
 from vehicle.arrays import Vector
 from vehicle.digits import beside_limit
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import DisplacementLaw
-from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.road_drive import RoadDrive
@@ -29,7 +29,8 @@ LOCKED = 1e8
 
 MOST_LIFTED, MOST_ENGAGED = 0.03, 0.01
 """Maximum share of the time in which a tyre leaves the road, and in which another law over displacement leaves its
-segment at rest (a stop: its clearance). At these shares the weighted comfort of the sedan is 0.9 % and 0.5 % off."""
+segment at rest (a stop: its clearance). Nine cars with lifting tyres below the first limit are -0.5 to +1.0 % off in
+weighted comfort, two with stops below the second one -0.4 % (docs/theory/estimate.md)."""
 
 REMEDY = "run the car instead"
 
@@ -49,7 +50,7 @@ def require_class(source: Any) -> RoadDrive:
     )
 
 
-def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
+def require_laws(dampers: Sequence[PlacedDamper], matrices: CarMatrices) -> None:
     """Check that the force of each damper follows from its velocity, and that the road is the only excitation.
 
     Raises:
@@ -69,12 +70,12 @@ def require_laws(dampers: Sequence[PlacedDamper], model: PoleModel) -> None:
                 raise ConfigurationError(
                     f"estimate: {damper.path} {reason}, so its force does not follow from its velocity alone; {REMEDY}"
                 )
-    for each in model.laws:
+    for each in matrices.laws:
         if each.friction:
             raise ConfigurationError(
                 f"estimate: {each.name} has rubber friction, whose force depends on its history; {REMEDY}"
             )
-    if model.forced:
+    if matrices.forced:
         raise ConfigurationError(
             "estimate: forces of the vehicle file shake the car too; leave them out with "
             f"--set apply_forces=false, or {REMEDY}"

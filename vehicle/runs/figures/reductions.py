@@ -17,8 +17,9 @@ from vehicle.runs.figures.figure import Details, Reduction, Values
 from vehicle.runs.figures.rows import recorded, velocities, wheels_of
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.comfort_error import overall_error, overall_waves
+from vehicle.signals.analysis.comfort_lines import lines_of_share
 from vehicle.signals.analysis.exposure import crest_factor, mtvv, vibration_dose_value
-from vehicle.signals.analysis.samples import Complex, Vector, lines_in_band
+from vehicle.signals.analysis.samples import Complex, Vector
 from vehicle.signals.analysis.settled import settling_time
 from vehicle.signals.analysis.slip import first_slips, slip_shares
 from vehicle.signals.analysis.spectra import band_periodogram
@@ -28,8 +29,8 @@ BLOCKS = 8
 
 
 def _band(details: Details, samples: int, step: float) -> tuple[float, float]:
-    """Return the band of a figure; by default all lines from the first to 0.8 of the Nyquist frequency."""
-    return (details.band[0], details.band[1]) if details.band else (1.0 / (samples * step), 0.4 / step)
+    """Return the band of a figure; by default all lines from the first, whole, to 0.8 of the Nyquist frequency."""
+    return (details.band[0], details.band[1]) if details.band else (0.5 / (samples * step), 0.4 / step)
 
 
 def _rms(rows: Vector, details: Details, runs: Runs, squares: Callable[[Vector], Vector]) -> Values:
@@ -67,7 +68,7 @@ def _rms_of_wheels(rows: Vector, details: Details, runs: Runs) -> Values:
 def _line_waves(lines: Complex, details: Details, _: Runs, twin: TwinLines) -> Complex:
     """Return the waves of the root of a sum of mean squares of lines."""
     if details.band:
-        lines = lines[:, :, lines_in_band(twin.frequency, (details.band[0], details.band[1]))]
+        lines = lines_of_share(twin.frequency, lines, (details.band[0], details.band[1]))
     return overall_waves(lines)
 
 

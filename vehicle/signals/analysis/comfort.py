@@ -59,7 +59,7 @@ def comfort_values(
     Args:
         time_step: sampling interval [s].
         acceleration: accelerations in x, y, z [m/s2], shape (r, 3, n).
-        band: (low, high) [Hz], both edges included.
+        band: (low, high) [Hz]; lines at its edges count with their `band_shares`.
 
     Raises:
         DataError: not three axes, or a record that `band_rms` rejects.

@@ -16,7 +16,7 @@ from vehicle.names import AXES
 from vehicle.signals.analysis.comfort_error import overall_waves
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.ride_comfort import SEAT_PREFIX, UNWEIGHTED, WEIGHTED, wave_columns
-from vehicle.signals.analysis.samples import Complex, Vector, lines_in_band
+from vehicle.signals.analysis.samples import Complex, Vector, band_shares
 from vehicle.signals.analysis.weighting import weighting
 
 
@@ -52,12 +52,18 @@ def _point(
     """Return the values at one point."""
     columns: dict[str, Vector] = {}
     if UNWEIGHTED in names:
-        columns |= _overall(UNWEIGHTED, lines[:, :, lines_in_band(frequency, band)], (1.0, 1.0, 1.0), axes)
+        columns |= _overall(UNWEIGHTED, lines_of_share(frequency, lines, band), (1.0, 1.0, 1.0), axes)
     if WEIGHTED in names:
         used = application(contact)
         curves = np.stack([weighting(name).transfer_function(frequency) for name in used.weightings])
         columns |= _overall(WEIGHTED, curves * lines, used.comfort_factors, axes)
     return columns
+
+
+def lines_of_share(frequency: Vector, lines: Complex, band: tuple[float, float]) -> Complex:
+    """Return the lines in a band, (..., m), those at its edges with the root of their share of the power."""
+    shares = band_shares(frequency, float(frequency[1] - frequency[0]), band)
+    return np.asarray(lines[..., shares > 0.0] * np.sqrt(shares[shares > 0.0]))
 
 
 def _overall(name: str, lines: Complex, factors: tuple[float, float, float], axes: bool) -> dict[str, Vector]:

@@ -96,6 +96,22 @@ def lines_in_band(frequency: Vector, band: tuple[float, float]) -> Mask:
     return (frequency >= band[0] - slack) & (frequency <= band[1] + slack)
 
 
+def band_shares(frequency: Vector, spacing: float, band: tuple[float, float]) -> Vector:
+    """Return the share of each line k df in a band: the part of its cell, df/2 to both sides, inside the band; (m,).
+
+    A mean square over the band is then an integral over its width, whatever the length of the record, and neighbouring
+    bands add up. A line on an edge counts half, the line at 0 Hz whole in a band from 0 Hz on.
+
+    Args:
+        frequency: lines [Hz]; (m,).
+        spacing: df [Hz].
+        band: lowest and highest frequency [Hz].
+    """
+    low = band[0] or -spacing
+    inside = np.minimum(frequency + 0.5 * spacing, band[1]) - np.maximum(frequency - 0.5 * spacing, low)
+    return np.asarray(np.clip(inside / spacing, 0.0, 1.0))
+
+
 def is_constant(signals: Vector) -> Mask:
     """Return a mask of the constant signals among (k, n): peak-to-peak value within the rounding of their magnitude."""
     size, extent = np.abs(signals).max(axis=-1), np.ptp(signals, axis=-1)

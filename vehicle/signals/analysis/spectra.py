@@ -1,7 +1,7 @@
 """One-sided power spectral densities and the RMS in a band; sum(S df) equals the mean square (Parseval)."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from vehicle.signals.analysis.record_lines import RecordLines
 from vehicle.signals.analysis.samples import (
     Complex,
     Vector,
+    band_shares,
     checked_band,
     checked_signals,
     checked_time_step,
@@ -136,10 +137,15 @@ def record_lines(rows: Iterable[Vector], count: int, samples: int, lines: slice)
 
 
 def band_periodogram(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> PowerSpectralDensity:
-    """Return the periodogram of the whole record, limited to the lines in the closed band [Hz]."""
+    """Return the periodogram of the whole record in a band [Hz]; lines at its edges count with their `band_shares`."""
     step = checked_time_step(time_step)
     edges, array = checked_band(band, step), checked_signals("signals", signals)
-    return _periodogram(step, array, lines_of_band(array.shape[1], step, edges))
+    inside = lines_of_band(array.shape[1], step, edges)
+    # The cells of the next lines may reach into the band.
+    spectrum = _periodogram(step, array, slice(max(inside.start - 1, 0), inside.stop + 1))
+    shares = band_shares(spectrum.frequency, spectrum.resolution_hz, edges)
+    assert spectrum.lines is not None  # a periodogram
+    return replace(spectrum, density=shares * spectrum.density, lines=np.sqrt(shares) * spectrum.lines)
 
 
 def lines_of_band(samples: int, step: float, band: tuple[float, float]) -> slice:
@@ -154,9 +160,10 @@ def lines_of_band(samples: int, step: float, band: tuple[float, float]) -> slice
 
 
 def band_rms(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> Vector:
-    """Return the RMS of each signal in the closed band, sqrt(sum_band S_k df) of the periodogram, shape (k,).
+    """Return the RMS of each signal in a band, sqrt(sum_band S_k df) of the periodogram, shape (k,).
 
-    Whole record, no window: a component with an integer number of periods in the record counts fully or not at all. A
+    Whole record, no window: a component with an integer number of periods in the record counts fully or not at all, or
+    half on an edge of the band. A
     component with another number of periods leaks by about one line (1 / duration), so a record should be long against
     1 / low edge, and a drift of the mean should be far smaller than the vibration.
 

@@ -162,7 +162,11 @@ class IsoRoad:
         length = steps * step
         lines = np.arange(max(1, int(np.ceil(self.lowest * length))), int(min(self.highest, highest) * length) + 1)
         if lines.size == 0:
-            raise ConfigurationError(f"road: {length:.4g} m are too short for {self.lowest:g} cycles/m; drive farther")
+            shortest = 1.0 / min(self.highest, highest)
+            raise ConfigurationError(
+                f"road: repeats after {length:.3g} m, less than its shortest wave of {shortest:.3g} m; choose a longer "
+                "--duration"
+            )
         wavenumber = lines / length
         related = isotropic_coherence(wavenumber, self.track) if self.coherence is None else self.coherence
         # One phase pair for each line of the road, so that a longer road of the same seed has the same phases; (2,

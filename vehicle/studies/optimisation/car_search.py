@@ -164,7 +164,7 @@ def plan_search(
         each = toleranced(vehicle, tolerances)
         spread = Spread(tolerances=each, bands=bands(len(each), count, settings.seed), quantile=chosen)
     if settings.screen is not None:
-        measure = estimate_measure(measure, vehicle, sources)
+        measure = estimate_measure(measure, vehicle, sources, alike=settings.cars)
     trials = Trials(
         problem=problem,
         inputs=sources,

@@ -163,8 +163,9 @@ def _estimated(case: Case, measure: EstimateMeasure) -> Result:
     try:
         with _ONE_AT_A_TIME:
             shared, changes = case.overrides[: case.shared], case.overrides[case.shared :]
-            car = _reference(case.vehicle, _changed(case.vehicle), shared)
-            values = _checked(measure.of_car(car.with_(changes) if changes else car, case.source))
+            # Roads of one speed take the same car one after the other.
+            car = _varied(case.vehicle, _changed(case.vehicle), shared, changes)
+            values = _checked(measure.of_car(car, case.source))
     except OF_A_RUN as error:
         return _failed(error, started)
     return Result(values=values, engine=ESTIMATE, seconds=clock.perf_counter() - started)

@@ -23,15 +23,21 @@ NOTE = f"values are {WORDS} (error: docs/theory/estimate.md); run the best cars 
 """Message before a sweep of estimates."""
 
 
+LEAST_ALIKE = 64
+"""Minimum number of cars that differ in the same parameters for ports, which take as long as ten of the cars."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class EstimateMeasure:
     """Measure that estimates the values of another measure.
 
     Attributes:
         each: measure of comfort, or of figures with an estimate.
+        by_ports: the cars differ in the same parameters and are many, see `vehicle.runs.car.linear_part`.
     """
 
     each: ComfortMeasure | FigureMeasure
+    by_ports: bool = False
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -56,18 +62,25 @@ class EstimateMeasure:
             ConfigurationError, SimulationError: the estimate does not cover the car on this road.
         """
         if isinstance(self.each, ComfortMeasure):
-            return dict(_estimate(car, source).values)
+            return dict(self._estimate(car, source).values)
         channels = {name for _, chosen in self.each.figures for name in (*chosen.channels, *chosen.over)}
-        estimate = _estimate(car, source, tuple(sorted(channels)))
+        estimate = self._estimate(car, source, tuple(sorted(channels)))
         return {name: estimated_figure(chosen, estimate) for name, chosen in self.each.figures}
 
+    def _estimate(self, car: Car, source: Input, channels: tuple[str, ...] = ()) -> RoadEstimate:
+        return road_estimate(car, require_class(source), channels, by_ports=self.by_ports)
 
-def _estimate(car: Car, source: Input, channels: tuple[str, ...] = ()) -> RoadEstimate:
-    return road_estimate(car, require_class(source), channels)
 
-
-def estimate_measure(measure: Measure, vehicle: Vehicle, sources: Sequence[Input]) -> EstimateMeasure:
+def estimate_measure(
+    measure: Measure, vehicle: Vehicle, sources: Sequence[Input], *, alike: int = 0
+) -> EstimateMeasure:
     """Return the measure that estimates the values of a measure.
+
+    Args:
+        measure: the measure.
+        vehicle: the car.
+        sources: the roads.
+        alike: number of cars that differ in the same parameters.
 
     Raises:
         ConfigurationError: a figure, a function or an input without an estimate.
@@ -78,4 +91,4 @@ def estimate_measure(measure: Measure, vehicle: Vehicle, sources: Sequence[Input
         raise ConfigurationError("estimate: this measure needs runs; choose comfort or figures of mean squares")
     for _, chosen in measure.figures if isinstance(measure, FigureMeasure) else ():
         require_estimated(chosen, vehicle)
-    return EstimateMeasure(each=measure)
+    return EstimateMeasure(each=measure, by_ports=alike >= LEAST_ALIKE)

@@ -187,7 +187,8 @@ def plan_sweep(
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     measure = chosen_measure(settings.measure, car.vehicle, start)
     if settings.estimate:
-        measure = estimate_measure(measure, car.vehicle, sources)
+        alike = len(changes) if isinstance(changes, Combinations | RowChanges) else 0
+        measure = estimate_measure(measure, car.vehicle, sources, alike=alike)
     require_on_inputs(measure, car, [changes[0], changes[-1]], sources)
     return SweepPlan(
         name=car.vehicle.name,
