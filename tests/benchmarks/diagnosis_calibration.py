@@ -15,6 +15,7 @@ wrong: what another car, speed, unit, axis, engine or road gives: refused, widen
 import sys
 import time
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import scipy
@@ -40,6 +41,7 @@ SEED = 20260063
 def both(car, speed=SPEED, count=None):
     """Diagnostics of a car with the phone and with the eight sensors, from the same drives."""
     phone = Diagnostics.of(car, PHONE, (speed, speed), SECONDS, highest=40.0, count=count)
+    assert phone.at_wheels is not None
     swapped = replace(phone.drives, features=phone.drives.features[::-1])
     eight = replace(phone, channels=EIGHT, drives=swapped, learned=phone.at_wheels)
     return {"phone": phone, "eight": eight}
@@ -140,7 +142,8 @@ def inside(diagnostics, prior, count):
 def other_car(car, rng, chosen=None):
     """A car outside the prior and its factors: other laws, each spring, stabilizer and mount +-30 % on each side."""
     factors = dict(zip(WHEELS, rng.uniform(0.3, 1.15, 4) if chosen is None else chosen, strict=True))
-    changes, composition = {}, car.vehicle.composition
+    changes: dict[str, Any] = {}
+    composition = car.vehicle.composition
     for damper in composition.dampers:
         instance, wheel = damper.path.partition(".")[0], damper.name.removeprefix("damper_")
         path = f"{instance}.{'left' if wheel.endswith('l') else 'right'}.damper"
@@ -234,7 +237,7 @@ def healthy(diagnostics, car, count):
     def at_half(number):
         return np.where(np.arange(4) == number % 4, 0.5, rng.uniform(0.85, 1.15, 4))
 
-    found = {}
+    found: dict[tuple[str, str], list[float]] = {}
     for kind, factors in (("good", good), ("half", at_half)):
         for number, (samples, _, _) in enumerate(others(car, count, rng, factors)):
             for name, diagnosis in judged(diagnostics, samples).items():

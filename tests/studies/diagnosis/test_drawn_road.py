@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 import scipy
 
+from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.road_drive import CONTACT_PATCH
 from vehicle.studies.diagnosis.drawn_road import DrawnRoad
 
-WHEELS = {"fl": (0.0, "left"), "fr": (0.0, "right"), "rl": (2.75, "left")}
+WHEELS: dict[str, tuple[float, Side]] = {"fl": (0.0, "left"), "fr": (0.0, "right"), "rl": (2.75, "left")}
 
 
 @pytest.mark.parametrize(("waviness", "variation"), [(2.0, 0.0), (1.7, 0.4), (2.3, 0.0)])

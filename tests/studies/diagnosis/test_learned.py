@@ -18,7 +18,8 @@ def drawn(count, rng):
 
 @pytest.fixture(scope="module")
 def learned():
-    return Learned(*drawn(400, np.random.default_rng(1)), TOGETHER)
+    features, values = drawn(400, np.random.default_rng(1))
+    return Learned(features, values, TOGETHER)
 
 
 def test_nine_of_ten_intervals_hold_the_value_and_follow_the_noise(learned):
