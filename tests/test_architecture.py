@@ -25,13 +25,16 @@ WINGS = {
     "drawing": ("rendering", "notebook"),
     "runs": ("car", "figures", "comparison", "output", "targets", "report"),
     "handover": ("fmu", "page", "bench"),
+<<<<<<< HEAD
     "studies": ("design", "mounts", "dampers", "diagnosis", "replication", "sweeps", "tuning", "optimisation"),
+=======
+    "studies": ("tables", "design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
+>>>>>>> main
     "commands": (),
 }
 """Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
 
-DATA = {"inputs", "templates", "vehicles"}
-"""Rooms that hold no modules."""
+DATA = {"inputs", "templates", "vehicles"}  # rooms that hold no modules
 
 BELOW = EVERYWHERE | {"handed_down", "machine", "replacement", "threads", "version"}
 """Modules that stand below all wings."""
@@ -82,7 +85,8 @@ ROOMS: dict[str, set[str]] = {
     | {"records", "reduced", "rendering", "report", "simulation", "steady", "targets"},
     "bench": {"analysis", "car", "excitation", "figures", "formats", "linear", "output", "page"}
     | {"parameters", "reduced", "rendering", "report", "shapes", "threads"},
-    "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
+    "tables": {"formats"},
+    "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "tables", "threads"},
     "mounts": {"formats", "parameters"},
     "dampers": {"core", "formats", "parameters", "records", "rendering", "report", "threads"},
     "diagnosis": {"analysis", "car", "excitation", "formats", "laws", "output", "parameters", "records", "reduced"}
@@ -94,10 +98,18 @@ ROOMS: dict[str, set[str]] = {
     | {"records", "reduced", "rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "excitation", "figures", "formats", "output", "parameters", "rendering"}
     | {"replacement", "sweeps", "targets"},
+<<<<<<< HEAD
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "diagnosis"}
     | {"excitation", "flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output", "page"}
     | {"parameters", "records", "rendering", "replication", "report", "sweeps", "threads", "tuning", "version"},
     "__init__": {"car", "comparison", "dampers", "diagnosis", "excitation", "figures", "fmu", "formats", "handed_down"}
+=======
+    "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
+    | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output", "page"}
+    | {"parameters", "records", "rendering", "replication", "report", "sweeps", "tables", "threads", "tuning"}
+    | {"version"},
+    "__init__": {"car", "comparison", "dampers", "excitation", "figures", "fmu", "formats", "handed_down"}
+>>>>>>> main
     | {"laws", "mounts", "optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},

@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from vehicle.runs.car.car_data import CarData as CarData
     from vehicle.runs.car.order_points import OrderPoints as OrderPoints
     from vehicle.runs.car.order_points import order_points as order_points
+    from vehicle.runs.car.profile_value import over_profile as over_profile
     from vehicle.runs.car.road import Road as Road
     from vehicle.runs.car.road import road as road
     from vehicle.runs.car.run import Run as Run
@@ -141,6 +142,7 @@ _MODULES = {
     "measured_responses": "vehicle.studies.tuning.measured_targets",
     "optimise": "vehicle.studies.optimisation.car_search",
     "order_points": "vehicle.runs.car.order_points",
+    "over_profile": "vehicle.runs.car.profile_value",
     "parameter_effects": "vehicle.studies.sweeps.parameter_effects",
     "read": "vehicle.signals.formats.reader",
     "read_measured": "vehicle.signals.records.measured",

@@ -3,8 +3,9 @@
 Parts: `comfort`, comfort_error and the error of a difference, of a linear car on generated and on Gaussian roads;
 `length`, comfort of 10, 30 and 60 s of one class with the reduced engine; `twin`, comfort and differences of cars on
 roads that repeat, with their linear twins; `kinds`, the same for five kinds of cars; `ratio`, comfort over a class from
-roads that do not repeat; `precision`, runs whose length a precision has chosen; `quantile`, quantiles of made cars;
-`sobol`, intervals of Sobol indices; `tuning`, standard errors of fitted parameters.
+roads that do not repeat; `precision`, runs whose length a precision has chosen; `profile`, values of a whole profile
+from pieces of it; `quantile`, quantiles of made cars; `sobol`, intervals of Sobol indices; `tuning`, standard errors of
+fitted parameters.
 """
 
 import argparse
@@ -19,6 +20,7 @@ import numpy.typing as npt
 import scipy
 
 from tests.benchmarks.car_kinds import kinds
+from tests.benchmarks.profile_pieces import profile
 from tests.benchmarks.road_precision import precision
 from tests.studies.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses
 from vehicle.engines.reduced.batch_simulation import COARSE_STEP
@@ -362,6 +364,7 @@ def tuning(repetitions: int) -> Rows:
 
 PARTS: dict[str, Callable[[int], Rows]] = {
     "comfort": comfort, "length": length, "twin": twin, "kinds": kinds, "ratio": ratio, "precision": precision,
+    "profile": profile,
     "quantile": quantile, "sobol": sobol, "tuning": tuning,
 }  # fmt: skip
 

@@ -49,7 +49,7 @@ def completed(script, line):
         ("vehicle shaker --input lo", ["low.csv"]),
         ("vehicle shaker --output ", []),
         ("vehicle shaker ", []),
-        ("vehicle body ", ["import", "build", "show", "compare", "participation"]),
+        ("vehicle body ", ["import", "build", "rigid", "show", "compare", "participation"]),
         ("vehicle body import modes.uff --le", ["--length-unit"]),
         ("vehicle body import --length-unit ", ["m", "mm", "in"]),
         ("python -m vehicle mod", ["modes"]),

@@ -119,6 +119,7 @@ SAME_IDEA = {
     "--wheel": "a wheel of the car",
     "--speed": "speed of the car; on a road also a channel of its record",
     "--video": "a film",
+    "--table": "a table of parameters: cases of a sweep, or a car of the user",
     "--road": "a road; over several speeds it is a class or level",
     "--rpm": "speeds of the crankshaft: one, a run-up, or steady points",
     "--from": "where something begins: at a time of a file, or with a template car",

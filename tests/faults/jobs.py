@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.faults.commands import DOOR, Written, writing_alone
+from tests.model.flexbody.hung_body import HungBody, write_test
 from tests.model.flexbody.modal_test import write_modes
 from vehicle import Car, road
 from vehicle.__main__ import main
@@ -22,7 +23,7 @@ READ = {
     "--input", "--road", "--dbc", "--vehicle", "--set", "--controller", "--measured", "--vary", "--table", "--profile",
     "--mass", "--dofs", "--nodes", "--residual", "--point-nodes", "--design", "--target", "--beside", "--tolerance",
     "--parameters", "--frf", "--record", "--signal", "--rival", "--numbers", "--damper-curve-front",
-    "--damper-curve-rear", "--channel", "--map", "--unit", "--cases", "--targets", "--cost",
+    "--damper-curve-rear", "--channel", "--map", "--unit", "--points", "--cases", "--targets", "--cost",
 }  # fmt: skip
 """Options with a file, or with a text of its own, that is read."""
 
@@ -115,7 +116,15 @@ def commands(inputs: Path) -> list[Written]:
     first, second = signal_file(inputs / "first.csv", 3.0), signal_file(inputs / "second.csv", 4.0)
     mounts = mount_file(inputs / "mount1.csv", 200.0), mount_file(inputs / "mount2.csv", 300.0)
     dampers = damper_file(inputs / "damper1.csv", 1200.0), damper_file(inputs / "damper2.csv", 1500.0)
+<<<<<<< HEAD
     drives = drive_file(inputs / "drive1.csv", 1), drive_file(inputs / "drive2.csv", 2)
+=======
+    tables = inputs / "car1.csv", inputs / "car2.csv"
+    for path, mass in zip(tables, (1450, 1500), strict=True):
+        path.write_text(f"mass,{mass},kg\nfront wheel centre x,0,mm\nfront wheel centre y,750,mm\n"
+                        "front wheel centre z,300,mm\nfront strut top x,40,mm\nfront strut top y,571,mm\n"
+                        "front strut top z,765,mm\naxes: Adams\n")  # fmt: skip
+>>>>>>> main
     runs = inputs / "run1", inputs / "run2"
     for run, source in zip(runs, (first, second), strict=True):
         if not run.exists():
@@ -124,6 +133,7 @@ def commands(inputs: Path) -> list[Written]:
     bodies = inputs / "body1.uff", inputs / "body2.uff"
     for body, speed in zip(bodies, (1.0, 1.1), strict=True):
         write_modes(body, speed=speed)
+    hung = [write_test(inputs / f"hung{seed}.uff", HungBody(seed=seed), np.arange(8.0, 75.0, 2.0)) for seed in (1, 2)]
     shipped = FOCUS_FILE.with_name("trimmed_body.toml")
     others = shipped_copies(inputs, shipped, "frequency_hz = 19.0", "frequency_hz = 19.1")
     designs = shipped_copies(inputs, FOCUS_FILE.with_name("body_design.toml"), "ratio = 0.03", "ratio = 0.02")
@@ -171,6 +181,7 @@ def commands(inputs: Path) -> list[Written]:
         job("drive", ["drive", *channel, "--output", "a", "--target"], [histories[0]], [histories[1]]),
         job("tune", ["tune", "focus", *fitted, "--output", "a", "--record"], [histories[0]], [histories[1]]),
         job("new", new, ["1450"], ["1500"]),
+        job("new --table", ["new", "a", "--table"], [str(tables[0])], [str(tables[1])]),
         changed("mjcf", "mjcf", "--output", "a"),
         changed("show", "show", "--output", "a"),
         changed("levels", "levels", "focus", "--frequency", "3,8", "--level", "0.1,1", "--output", "a"),
@@ -182,6 +193,7 @@ def commands(inputs: Path) -> list[Written]:
         job("fit-damper", ["fit-damper", "--output", "a"], [str(dampers[0])], [str(dampers[1])]),
         job("body import", ["body", "import", "--output", "a.toml"], [str(bodies[0])], [str(bodies[1])]),
         job("body build", ["body", "build", "--output", "a.npz", "--design"], [designs[0]], [designs[1]]),
+        job("body rigid", ["body", "rigid", "--output", "a.toml"], [str(hung[0])], [str(hung[1])]),
         job("body show", ["body", "show", "--output", "a"], [others[0]], [others[1]]),
         job("body compare", ["body", "compare", "--output", "a", str(shipped)], [others[0]], [others[1]]),
         job("body participation", ["body", "participation", "--output", "a", "--damper"], ["stuck"], ["sliding"]),

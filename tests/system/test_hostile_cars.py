@@ -64,7 +64,8 @@ WORDS = {
     "diagnose": ("RUN/time.npz", "--vehicle", "CAR", "--speed", "80", "--drives", "160", "--output", "out"),
     "fit-mount": ("controller.fmu", "--output", "out"),
     "fit-damper": ("controller.fmu", "--output", "out"),
-    "new": ("out", "--from", "CAR", "--kerb-mass", "1450", "--wheelbase", "2.65", "--front-axle-load", "800"),
+    "new": ("out", "--from", "CAR", "--kerb-mass", "1450", "--wheelbase", "2.65", "--front-axle-load", "800",
+            "--wheel-rate-front", "24000", "--tyre-stiffness-front", "210000"),
     "fmu": ("CAR", "--output", "out/car.fmu"),
     "trust": ("--list",),
 }  # fmt: skip

@@ -1,5 +1,6 @@
 """`python -m vehicle fit-damper`: the law of a damper from records of a test machine."""
 
+import itertools
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -58,7 +59,8 @@ class DamperFitSettings(Settings):
     )
     condition: tuple[str, ...] = setting(
         "condition of the tests, for example current=1 for all files, current=0,0,1 for three files, or "
-        "current=channel:I for the mean of channel I of each file. Tests at equal conditions give one law. "
+        "current=channel:I for channel I of each file: its mean, or its values over time if it changes during a test. "
+        "Tests at equal conditions give one law. "
         "May be repeated",
         (),
         action="append",
@@ -119,7 +121,8 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
     paths = settings.destination.files(Path("runs/damper"), list(contents))
     write_together(paths, contents.values())
     texts = [fit_json(fitted) for fitted in fits]
-    summary = [line for fitted in fits for line in summary_lines(fitted)]
+    again = [False, *(one.tests is other.tests for one, other in itertools.pairwise(fits))]
+    summary = [line for fitted, same in zip(fits, again, strict=True) for line in summary_lines(fitted, same)]
     summary.append(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
     console.result(texts[0] if len(texts) == 1 else {"dampers": texts}, "\n".join(summary))
 

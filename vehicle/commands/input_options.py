@@ -111,13 +111,11 @@ def road_options(
         help="speed of the car [km/h]; for a road recorded over time, channel:NAME names the channel with the speed"
         + ("; one for all roads, or one for each" if several else ""),
     )
-    setting_options(group, RoadSettings, "duration")
+    setting_options(group, RoadSettings, "duration", *(["precision"] if precision else []))
     setting_options(parser if rate_note else group, RoadSettings, "rate", note=rate_note)
     random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
     each = "; repeat it to see the scatter: each road runs with each seed" if several else ""
     setting_options(random, RoadSettings, "seed", note=each, action="append" if several else "store")
-    if precision:
-        setting_options(random, RoadSettings, "precision")
     setting_options(random, RoadSettings, "period")
     setting_options(random, RoadSettings, "coherence")
     setting_options(group, RoadSettings, "patch")

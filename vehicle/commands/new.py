@@ -26,11 +26,23 @@ if TYPE_CHECKING:
 
 GROUPS = {
     "mass": ("kerb_mass", "front_axle_load", "rear_axle_load", "cog_x", "cog_height"),
-    "lengths": ("wheelbase", "track_front", "track_rear", "tyre_radius"),
+    "lengths": ("wheelbase", "track_front", "track_rear", "tyre_radius", "tyre_free_radius"),
     "inertia": ("roll_inertia", "pitch_inertia", "yaw_inertia"),
     "ride": ("ride_frequency_front", "ride_frequency_rear", "pitch_frequency", "wheel_hop_front", "wheel_hop_rear"),
     "dampers": ("damping_ratio_front", "damping_ratio_rear", "damper_curve_front", "damper_curve_rear"),
     "roll": ("roll_stiffness_front", "roll_stiffness_rear"),
+    "parts": tuple(
+        f"{name}_{axle}"
+        for name in (
+            "unsprung_mass",
+            "wheel_rate",
+            "spring_stiffness",
+            "tyre_stiffness",
+            "wheel_damping",
+            "damper_constant",
+        )
+        for axle in ("front", "rear")
+    ),
 }
 """Titles of the help, and the numbers of each."""
 
@@ -49,7 +61,7 @@ def parser() -> Parser:
         help="class of the car, which sets default masses, lengths and ride frequencies; electric-suv has an "
         "electric drive, no engine",
     )
-    setting_options(parser, NewSettings, "numbers")
+    setting_options(parser, NewSettings, "numbers", "table")
     for title, names in GROUPS.items():
         group = parser.add_argument_group(title)
         for name in names:
@@ -109,6 +121,13 @@ class NewSettings(Settings):
         type=Path,
         metavar="FILE.toml",
     )
+    table: Sequence[Path] | None = setting(
+        "tables of the car: hardpoints, masses, rates, tyres with names and units (CSV, XLSX, .adm, .cmd, .urdf, "
+        ".tir); options and --numbers take precedence",
+        type=Path,
+        nargs="+",
+        metavar="FILE",
+    )
     stated: Mapping[str, Any] = field(default_factory=dict)
     destination: Destination = part(Destination)
 
@@ -123,13 +142,18 @@ def settings_of(options: argparse.Namespace) -> NewSettings:
 
 def _job(settings: NewSettings, console: Console) -> None:
     # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.commands.new_table import plot_table, table_json, table_report
     from vehicle.model.parameters.quantity import NAME_PATTERN
     from vehicle.model.parameters.shipped import vehicle_file
     from vehicle.runs.car.motion_figures import motion_figures
     from vehicle.runs.output.folder import output_folder, write_files, write_text
     from vehicle.runs.output.free_names import named
+    from vehicle.studies.design.axle_types import AXLE_TYPES, axle_type_names, with_axles
     from vehicle.studies.design.new_car import new_car, template_files
     from vehicle.studies.design.stated_numbers import stated_numbers
+    from vehicle.studies.design.template_car import template_car
+    from vehicle.studies.design.written_table import table_lines
+    from vehicle.studies.tables.car_table import car_table
 
     name, from_car, force = settings.folder.name, settings.source, settings.destination.force
     if not NAME_PATTERN.fullmatch(name):
@@ -139,6 +163,8 @@ def _job(settings: NewSettings, console: Console) -> None:
             f"NAME {name}: is the name of a shipped car, which --vehicle finds first; choose another name"
         )
     stated = stated_numbers(settings.numbers, settings.stated)
+    if from_car is None and settings.table:
+        from_car = "sedan"
     if from_car is None:
         if stated.car_class is None:
             raise ConfigurationError(
@@ -150,13 +176,24 @@ def _job(settings: NewSettings, console: Console) -> None:
         folder = named(settings.destination.held, settings.folder, force=force, protect=(source,))
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
-    result = new_car(name, from_car, stated)
+    of_file, template = None, template_car(source)
+    if settings.table:
+        of_file = car_table(settings.table, template.point_names, {name: axle_type_names(name) for name in AXLE_TYPES})
+        template = with_axles(template, of_file.axles)
+        stated = stated_numbers(settings.numbers, settings.stated, of_file.numbers)
+    result = new_car(name, from_car, stated, of_file)
     with output_folder(folder, force=force) as temporary:
         write_text(temporary / "vehicle.toml", result.text)
         write_files(temporary, {file.name: file.read_bytes() for file in template_files(source, result.car)})
+        if of_file is not None:
+            write_text(temporary / "table.csv", "\n".join(table_lines(result, template, of_file)) + "\n")
+            if of_file.points:
+                plot_table(temporary / "points.svg", result, template, of_file)
     file = folder / "vehicle.toml"
     figures = motion_figures(result.car)
-    console.result(_checks(result, file, figures), _report(result, file, figures))
+    read = {} if of_file is None else {"table": table_json(of_file)}
+    lines = [] if of_file is None else table_report(result, template, of_file)
+    console.result({**_checks(result, file, figures), **read}, "\n".join([*lines, _report(result, file, figures)]))
 
 
 def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:

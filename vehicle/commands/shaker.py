@@ -123,6 +123,11 @@ def _job(settings: ShakerSettings | OrderSettings, console: Console) -> None:
     if isinstance(settings, OrderSettings):
         console.say(order_study(settings))
         return
+    from vehicle.handover.page.profile_study import on_pieces, profile_study
+
+    if on_pieces(settings):
+        console.say(profile_study(settings, console, console.command("vehicle.shaker")))
+        return
     from vehicle.handover.page.shaken_run import shake
 
     def print_numbers(summary: RunSummary, car: Car) -> None:

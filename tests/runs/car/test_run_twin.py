@@ -7,6 +7,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle import Car, load_run, road, sweep
 from vehicle.engines.reduced.twin_run import damping_of_run, twin_run
 from vehicle.names import across
@@ -19,7 +20,7 @@ from vehicle.runs.output.run_comfort import comfort_values
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.run_input import change_half_width
 from vehicle.signals.analysis.comfort import COMFORT_BAND
-from vehicle.signals.analysis.comfort_error import STUDENT_95, difference_error
+from vehicle.signals.analysis.comfort_error import NORMAL_95, STUDENT_95, difference_error
 from vehicle.signals.analysis.comfort_lines import comfort_lines
 from vehicle.signals.analysis.ride_comfort import comfort_columns, waves_of
 
@@ -181,20 +182,65 @@ def test_cars_with_shared_poles_have_the_twins_of_single_cars(run: Run):
     assert np.max(np.abs(first - second)) > 1e-3 * np.max(np.abs(first))
 
 
-def test_a_car_without_friction_has_the_error_of_the_phases_of_its_road():
+PHASED = ("weighted", "unweighted:z", "rms:knuckle fr z:8-20", "tyre_load_rms:fr")
+
+
+def test_cars_without_friction_have_the_error_of_the_phases_of_their_road():
     """Second derivation: half of the difference between the runs on the road and on the road with its tracks exchanged.
 
-    The car is nearly its own twin. Its run begins with a rise from rest, which moves its values by about 1e-4.
+    The cars are nearly their own twins. A run begins with a rise from rest, which moves its values by about 1e-4.
     """
-    run = drive(Car.load("focus_road", {f"{axle}.damper.coulomb_friction": 0.0 for axle in ("front", "rear")}))
-    plates, profile = ({w: rows[across(w)] for w in rows} for rows in (run.signal.displacement, run.signal.profile))
-    signal = replace(run.signal, displacement=plates, profile=profile)
-    mirrored = run.car.run(signal, engine="reduced", skip=run.skip)
-    value, other = (each.comfort().weighted.overall for each in (run, mirrored))
-    half = abs(value - other) / 2.0
-    assert half > 5e-4 * value
-    assert run.comfort().errors["weighted"] * value == pytest.approx(half, abs=2e-4 * value)
-    assert mirrored.comfort().errors["weighted"] * other == pytest.approx(half, abs=2e-4 * value)
+    free = {f"{axle}.damper.coulomb_friction": 0.0 for axle in ("front", "rear")}
+    cars = [Car.load("focus_road", free | {"front.damper.viscous": viscous}) for viscous in (2250.0, 1800.0)]
+    runs = [drive(each) for each in cars]
+    found = []
+    for run in runs:
+        plates, profile = ({w: rows[across(w)] for w in rows} for rows in (run.signal.displacement, run.signal.profile))
+        signal = replace(run.signal, displacement=plates, profile=profile)
+        mirrored = run.car.run(signal, engine="reduced", skip=run.skip)
+        chosen = [chosen_figure(name, run.car.vehicle) for name in PHASED]
+        found.append([[values_of(figure, evaluated(each)) for each in (run, mirrored)] for figure in chosen])
+    for name, first, second in zip(PHASED, *found, strict=True):
+        halves = []
+        for here, there in (first, second):
+            value = float(here.value[0])
+            halves.append(0.5 * float(here.value[0] - there.value[0]))
+            assert abs(halves[-1]) > 5e-4 * value or name not in ("weighted", "rms:knuckle fr z:8-20"), name
+            for each in (here, there):
+                assert each.error is not None
+                assert each.error[0] == pytest.approx(abs(halves[-1]), abs=5e-4 * value), name
+        waves = [each[0].waves for each in (first, second)]
+        stated = STUDENT_95 * difference_error(*waves)[0] / NORMAL_95
+        assert stated == pytest.approx(abs(halves[1] - halves[0]), abs=1e-4 * value), name
+    of_knuckle = [each[0].value[0] - each[1].value[0] for each in (found[0][2], found[1][2])]
+    assert abs(of_knuckle[0] - of_knuckle[1]) > 2e-4 * found[0][2][0].value[0]  # above the tolerance
+
+
+def test_the_mean_dose_of_random_phases_is_that_of_its_lines(run: Run):
+    """Closed form: E[a^4] = 3 s^4 - 3/2 sum P_k^2; with 5 lines 8 % below that of a Gaussian vibration."""
+    figure, runs = chosen_figure("vdv:seat rail z:Wk", run.car.vehicle), evaluated(run)
+    rng, power = np.random.default_rng(3), np.array([3.0, 1.0, 2.0, 1.0, 2.0])
+    lines = np.zeros((4000, 1, 97), dtype=np.complex128)
+    lines[:, 0, [30, 37, 55, 71, 96]] = np.sqrt(power) * np.exp(2j * np.pi * rng.random((4000, 5)))
+    twin, reduce = TwinLines(np.arange(1.0, 98.0) / 6.0, {}, {}), figure.figure.reduces.lines
+    assert reduce is not None
+    values = reduce(lines, figure, runs, twin)
+    duration = runs.evaluated.stop * runs.timestep - run.skip
+    closed = duration * (3.0 * 9.0**2 - 1.5 * np.sum(power**2))
+    validated(
+        "Statistics and intervals", "mean fourth power of a dose of five lines, over the closed form",
+        np.mean(values.value**4) / closed, 1.0, abs=0.02, source="closed form: 3 s^4 - 3/2 sum P_k^2",
+    )  # fmt: skip
+    assert values.expected == pytest.approx(closed**0.25, rel=1e-9)
+
+
+def test_a_dose_has_an_error_on_a_road_that_repeats_alone(car: Car, run: Run):
+    figure = chosen_figure("vdv:seat rail z:Wk", car.vehicle)
+    values, other = (values_of(figure, evaluated(each)) for each in (run, drive(car, period="record")))
+    assert values.explained is not None and values.explained[0] > 0.5 and other.first()[1] is None
+    _, error = values.first()
+    # A Gaussian vibration with a bandwidth of 3 Hz scatters by about 1/sqrt(B T) in its dose.
+    assert error is not None and 2e-3 < error / values.value[0] < 1.0 / math.sqrt(3.0 * 6.0)
 
 
 @pytest.mark.parametrize("name", ["weighted", "unweighted:x", "rms:seat rail z:5-25", "tyre_load"])

@@ -81,7 +81,7 @@ def test_error_of_a_difference_on_the_same_road():
     stated = difference_error(values[0].waves, values[1].waves)
     assert gap.std(ddof=1) < 0.3 * values[0].overall.std(ddof=1)
     assert np.sqrt(np.mean(stated**2)) == pytest.approx(gap.std(ddof=1), rel=0.11)
-    assert values[0].waves.shape == (RECORDS, WAVES)
+    assert values[0].waves.shape == (RECORDS, WAVES + 1) and not values[0].waves[:, -1].any()
 
 
 def test_the_error_of_the_weighted_value_is_its_scatter():
@@ -116,8 +116,9 @@ def test_silence_has_no_error():
 
 
 def complex_waves(rng, count):
-    """Return circular Gaussian waves with the variance 1."""
-    return (rng.standard_normal((count, WAVES, 2)) @ np.array([1.0, 1j])) / np.sqrt(2.0)
+    """Return circular Gaussian waves with the variance 1, and a wave 0 of the phases."""
+    waves = (rng.standard_normal((count, WAVES, 2)) @ np.array([1.0, 1j])) / np.sqrt(2.0)
+    return np.pad(waves, ((0, 0), (0, 1)))
 
 
 def test_the_error_with_a_twin_covers_what_the_twin_does_not_explain():

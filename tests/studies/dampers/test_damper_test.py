@@ -5,7 +5,8 @@ import pytest
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.records.choice import Choice
-from vehicle.studies.dampers.damper_test import by_conditions, read_test
+from vehicle.studies.dampers.conditions import by_conditions
+from vehicle.studies.dampers.damper_test import read_test
 
 HEAD = "time [s],displacement [mm],velocity [mm/s],force [kN],I [A]"
 

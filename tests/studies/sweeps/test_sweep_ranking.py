@@ -122,7 +122,10 @@ def test_the_error_of_the_ranking_is_that_of_the_weighted_value():
     table, names = table_of([("30",), ("10",)], ["front.spring"]), wave_names("weighted")
     sizes = [0.0, 0.0, 0.1, 0.2]  # of the waves of each row: the first car, then the second
     results = [
-        replace(result, values=result.values | dict.fromkeys(names, size / math.sqrt(2.0)))
+        replace(
+            result,
+            values=result.values | dict.fromkeys(names[:-2], size / math.sqrt(2.0)) | dict.fromkeys(names[-2:], 0.0),
+        )
         for result, size in zip(table.results, sizes, strict=True)
     ]
     cars = ranked(replace(table, results=results))

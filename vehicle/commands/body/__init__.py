@@ -1,9 +1,9 @@
-"""`python -m vehicle body import | build | show | compare | participation`: body models for a car, a file for each."""
+"""`python -m vehicle body import | build | rigid | show | compare | participation`: body models, a file for each."""
 
 import argparse
 from typing import Any
 
-from vehicle.commands.body import build_body, compare_bodies, import_body, participation, show_body
+from vehicle.commands.body import build_body, compare_bodies, import_body, participation, rigid_body, show_body
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.options import EXIT_CODES, command_parser, read
@@ -12,6 +12,7 @@ from vehicle.commands.parser import Parser
 TASKS = {
     "import": import_body,
     "build": build_body,
+    "rigid": rigid_body,
     "show": show_body,
     "compare": compare_bodies,
     "participation": participation,
@@ -22,7 +23,7 @@ def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
         "body",
-        "Import a body model from finite elements or a modal test, build it, show it, compare two, rank its modes.",
+        "Import a body model, build it, show it, compare two, rank its modes; fit mass and inertia to a hung test.",
     )
     tasks = parser.add_subparsers(dest="task", required=True, metavar="|".join(TASKS))
     for name, task in TASKS.items():

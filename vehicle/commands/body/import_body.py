@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.body.model_file import output_options, require_output, write
+from vehicle.commands.body.model_file import origin_of, output_options, require_output, write
 from vehicle.commands.body.show_body import report
 from vehicle.commands.console import Console
 from vehicle.commands.options import message_options, setting_options, vehicle_options
@@ -16,7 +16,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination
-from vehicle.settings import Settings, finite_numbers, part, setting
+from vehicle.settings import Settings, part, setting
 
 if TYPE_CHECKING:
     from vehicle.model.flexbody.mass_properties import MassProperties
@@ -227,10 +227,7 @@ def run(settings: ImportSettings, console: Console) -> None:
         "spread": 1e-3 * settings.spread,
         "named": read_map(settings.point_nodes) if settings.point_nodes else {},
     }
-    axes = finite_numbers(settings.origin, ",")
-    if len(axes) != 3:
-        raise ConfigurationError(f"--origin {settings.origin}: must be three numbers [m], for example 1.2,0,0.35")
-    origin = (axes[0], axes[1], axes[2])
+    origin = origin_of(settings.origin)
     matrices = _matrices(settings)
     idle: tuple[str, ...] = (MODES,) if matrices is not None else (MATRICES, FILES)
     if matrices is not None and settings.file.suffix == ".sti":

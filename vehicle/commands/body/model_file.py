@@ -9,9 +9,11 @@ from vehicle.commands.options import FORCE_HELP
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.car_choice import CarChoice
 from vehicle.runs.output.destination import Destination
+from vehicle.settings import finite_numbers
 
 if TYPE_CHECKING:
     from vehicle.model.flexbody.superelement import Superelement
+    from vehicle.model.parameters.hardpoints import Point
     from vehicle.model.parameters.vehicle import Vehicle
 
 
@@ -54,3 +56,15 @@ def model_of(file: Path | None, car: CarChoice, vehicle: Vehicle) -> Superelemen
     from vehicle.model.flexbody.superelement_file import read_superelement
 
     return body_model(vehicle, car.folder) if file is None else read_superelement(file)
+
+
+def origin_of(text: str) -> Point:
+    """Return the three numbers of --origin [m].
+
+    Raises:
+        ConfigurationError: other than three finite numbers.
+    """
+    axes = finite_numbers(text, ",")
+    if len(axes) != 3:
+        raise ConfigurationError(f"--origin {text}: must be three numbers [m], for example 1.2,0,0.35")
+    return axes[0], axes[1], axes[2]

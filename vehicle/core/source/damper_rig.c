@@ -5,14 +5,15 @@
 enum { ITERATIONS = 60, SLOW = 8 }; /* of a sample; from SLOW on every second one is a bisection: the force may fall with w */
 static const double CLOSED = 1e-10; /* residual over the sum of the forces */
 
-/* Solve K s = F_c(v - s') + sum of clamp(t + k du, l) + k_g (x - s) + F_0 at each sample, by Newton's method in a bracket. */
+/* Solve K e(s) = F_c(v - s') + sum of clamp(t + k du, l) + k_g (x - s) + F_0 at each sample, by Newton's method in a
+   bracket; e(s) is the deflection beyond a gap of the width 2 h: s - h above h, s + h below -h, otherwise zero. */
 EXPORT void core_damper_rig(const DamperRig *rig) {
   int64_t n = rig->displacement.n[0], m = rig->limit.n[0], last = rig->knots.n[0], segment = 0;
   const double *rates = rig->rates.at, *near = rates + n, *far = near + n, *x = rig->displacement.at, *v = rig->velocity.at;
   const double *stiffness = rig->stiffness.at, *limits = rig->limit.at;
   double *forces = rig->forces.at, *deflection = rig->deflection.at, *inner = rig->inner.at;
   char *sticking = rig->sticking.at;
-  double s = rig->first / rig->spring, before = s;
+  double half = rig->half, s = rig->first / rig->spring + (rig->first < 0.0 ? -half : half), before = s;
   deflection[0] = s, inner[0] = v[0];
   for (int64_t i = 0; i < m; i++) sticking[i] = 1;
   for (int64_t at = 1; at < n; at++) {
@@ -29,8 +30,11 @@ EXPORT void core_damper_rig(const DamperRig *rig) {
         /* Where the force falls with the velocity, its slope is left out: a shorter step of the iteration. */
         slope = larger(slope - 2.0 * rig->drop * weight * ratio / rig->critical, 0.0);
       }
-      double size = absolute(curve) + absolute(rig->offset), total = rig->spring + rate * slope + rig->gas;
-      double error = rig->spring * s - curve - rig->gas * (x[at] - s) - rig->offset;
+      double engaged = s > half ? s - half : s < -half ? s + half : 0.0, spring = rig->spring;
+      /* In the gap the force is zero: an error of 1e-10 N counts as none, and a slope of 1 N s/m keeps the step finite. */
+      if (engaged == 0.0 && half > 0.0) spring = rate;
+      double size = absolute(curve) + absolute(rig->offset) + (half > 0.0), total = spring + rate * slope + rig->gas;
+      double error = rig->spring * engaged - curve - rig->gas * (x[at] - s) - rig->offset;
       for (int64_t i = 0; i < m; i++) {
         double t = forces[i] + stiffness[i] * (anchor - s), limit = limits[i];
         size += limit;
@@ -41,8 +45,10 @@ EXPORT void core_damper_rig(const DamperRig *rig) {
       if (absolute(error) <= CLOSED * size) break;
       if (error > 0.0) high = smaller(high, s);
       else low = larger(low, s);
-      s -= error / total;
-      if (!(low < s && s < high) || (count > SLOW && count % 2 && high - low < 1e299)) s = 0.5 * (low + high);
+      double next = s - error / total;
+      if (next == s) break; /* the step is below the digits of s */
+      if (high - low < 1e299 && (!(low < next && next < high) || (count > SLOW && count % 2))) next = 0.5 * (low + high);
+      s = next;
     }
     for (int64_t i = 0; i < m; i++) {
       double t = forces[i] + stiffness[i] * (anchor - s), limit = limits[i];

@@ -243,7 +243,7 @@
 #define DAMPER_RIG_FIELDS(F) \
   F(Vector, displacement) F(Vector, velocity) F(Table, rates) F(Vector, knots) F(Vector, slopes) F(Vector, offsets) \
   F(Vector, stiffness) F(Vector, limit) F(Vector, forces) F(double, spring) F(double, gas) F(double, offset) \
-  F(double, drop) F(double, critical) F(double, first) F(Vector, deflection) F(Vector, inner) F(Texts, sticking)
+  F(double, drop) F(double, critical) F(double, half) F(double, first) F(Vector, deflection) F(Vector, inner) F(Texts, sticking)
 
 /* All records, each after those that it contains; arrays stand between the laws and the others. */
 #define EACH_LAW(S) \

@@ -14,6 +14,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.element_numbers import FLUID, TURNING
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.damper import unpack
+from vehicle.model.parameters.air_spring import air_stiffness
 from vehicle.names import AXES
 
 HELD = ("world", "body")
@@ -179,7 +180,10 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
                 continue
             way = fields.get(f"directions/{name}", np.eye(3)).reshape(3, 3).T
             curves = {axis: _bent(fields, f"{name}/{letter}", force[axis]) for axis, letter in enumerate(AXES)}
-            soft.append((ends[name], way, law[:3], force, torque, law[TURNING], curves))
+            elastic = law[:3].copy()
+            if (air := fields.get(f"air/{name}")) is not None:
+                elastic[2] += air_stiffness(-float(force[2]), *air)[0]  # isothermal: the axle is lifted slowly
+            soft.append((ends[name], way, elastic, force, torque, law[TURNING], curves))
         elif model.eq_type[index] == mujoco.mjtEq.mjEQ_TENDON and law.size:
             lower, upper = (model.site(f"{name}/{end}").id for end in ("lower", "upper"))
             if bodies & {int(model.site_bodyid[lower]), int(model.site_bodyid[upper])}:

@@ -22,10 +22,19 @@ from vehicle.engines.reduced.equivalent_damping import equivalent_damping
 from vehicle.engines.reduced.linear_twin import linear_twin
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.model.parameters.force_elements import Damper
+from vehicle.signals.analysis.fast_length import fast_length
+from vehicle.signals.excitation.signal import Signal
 from vehicle.threads import one_blas_thread
 
 HIGHEST = 100.0
 """Highest frequency of the twin [Hz], the upper limit of the weightings of ISO 2631-1."""
+
+FALL_S, PAUSE_S = 1.0, 4.0
+"""Times [s] in which the plates return to rest after the record, and in which the twin comes to rest, until it repeats:
+a motion of 1 Hz with a damping ratio of 0.2 decays to 0.7 %."""
+
+LAW = "law_"
+"""Prefix of the displacement of a law as an output of the twin."""
 
 LINES_AT_ONCE = 2**14
 """Lines that are computed together, which limits the memory: a number for each pole at each line."""
@@ -64,7 +73,8 @@ def twin_lines(
         dampings: damping constants c of each twin [N s/m]; (d,) each.
         roads: for each of i roads, wheel to displacement of its plate over one period [m]; other plates do not move.
         period: length of the period T [s].
-        channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers.
+        channels: accelerations [m/s2], dynamic tyre forces [N], velocities [m/s] and forces [N] of the dampers, and
+            "law_N" for the displacement of the law N of the model [m].
         samples: number of samples of a record of one period.
 
     Returns:
@@ -72,6 +82,8 @@ def twin_lines(
     """
     names = model.matrices.damper_names
     outputs = [name for name in channels if name.startswith("tyre_") or "_acc_" in name]
+    laws = [name for name in channels if name.startswith(LAW)]
+    further = model.law_outputs.part([int(name.removeprefix(LAW)) for name in laws]) if laws else None
     count = next(iter(roads[0].values())).size
     lines = np.arange(1, min(int(HIGHEST * period), (min(count, samples) - 1) // 2) + 1)
     spectra = np.zeros((len(model.matrices.system.inputs), len(roads), lines.size), dtype=np.complex128)  # (w, i, m)
@@ -82,10 +94,10 @@ def twin_lines(
     result = np.empty((len(dampings), len(roads), len(channels), lines.size), dtype=np.complex128)
     for first in range(0, lines.size, LINES_AT_ONCE):
         part = slice(first, first + LINES_AT_ONCE)
-        twin = linear_twin(model, outputs, lines[part] / period, spectra[:, :, part])
+        twin = linear_twin(model, outputs, lines[part] / period, spectra[:, :, part], further=further)
         for number, damping in enumerate(dampings):
             velocity = twin.velocities(damping)
-            rows = dict(zip(outputs, twin.with_velocities(damping, velocity), strict=True))
+            rows = dict(zip([*outputs, *laws], twin.with_velocities(damping, velocity), strict=True))
             rows |= {f"{name}_velocity": row for name, row in zip(names, velocity, strict=True)}
             rows |= {f"{name}_force": c * row for name, c, row in zip(names, damping, velocity, strict=True)}
             result[number, :, :, part] = np.stack([rows[name] for name in channels], axis=1)
@@ -113,3 +125,16 @@ def twin_run(
     # A line at k/T and its mirror image.
     whole[:, 1 : lines.shape[1] + 1] = lines * (samples / np.sqrt(2.0))
     return dict(zip(channels, np.fft.irfft(whole, samples, axis=1), strict=True))
+
+
+def returning(signal: Signal) -> tuple[dict[str, Vector], float]:
+    """Return the plates of a record, which begin at rest, continued to rest again [m], and the whole length [s]."""
+    fall, step = round(FALL_S / signal.timestep), signal.timestep
+    way = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, fall + 1) / fall))
+    count = signal.time.size
+    total = fast_length(count + fall + round(PAUSE_S / step))
+    plates = {}
+    for wheel, displacement in signal.displacement.items():
+        plates[wheel] = np.zeros(total)
+        plates[wheel][: count + fall] = np.concatenate([displacement, displacement[-1] * way])
+    return plates, total * step

@@ -47,6 +47,22 @@ class Bushings(NamedTuple):
     directions: Table
 
 
+class AirSprings(NamedTuple):
+    """Elements whose stiffness along z follows from their static load, k of them; see `parameters.air_spring`.
+
+    No part of `Layout`: the core reads the stiffness that follows.
+
+    Attributes:
+        elements: indices among the bushings; (k,).
+        bellows: stiffness of the bellows alone [N/m]; (k,).
+        numbers: area [m2], volume [m3], growth of the area [m]; (k, 3).
+    """
+
+    elements: Index
+    bellows: Vector
+    numbers: Table
+
+
 class Rotations(NamedTuple):
     """Elements with a rotational stiffness, m of them.
 

@@ -1,12 +1,13 @@
-"""Nonlinear laws over displacement and their operating points."""
+"""Nonlinear laws over displacement and air springs: operating points, and the stiffness there."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.engines.simulation.element_records import Layout, Table, Tables
+from vehicle.engines.simulation.element_records import AirSprings, Layout, Table, Tables
 from vehicle.model.laws.curve import Curve
+from vehicle.model.parameters.air_spring import air_stiffness
 
 
 def tables_through(points: Sequence[tuple[Table, tuple[int, int, int]]]) -> Tables:
@@ -33,11 +34,12 @@ def curve_of(tables: Tables, index: int) -> Curve:
     return Curve(knots=knots, slopes=tables.slopes[index, :count], offsets=tables.offsets[index, :count])
 
 
-def standing_on(layout: Layout, preload: Vector | None) -> Layout:
-    """Return the layout with the operating points of the curves, and their tangents as stiffness.
+def standing_on(layout: Layout, air: AirSprings, preload: Vector | None) -> Layout:
+    """Return the layout with the operating points of the curves, and tangents and air stiffness at these points.
 
     Args:
         layout: layout of the elements.
+        air: air springs among the bushings.
         preload: static forces, see `Weights`; None before the static trim, which starts with the steepest segments.
     """
     t, stiffness, springs = layout.tables, layout.bushings.stiffness.copy(), layout.springs.stiffness.copy()
@@ -57,8 +59,14 @@ def standing_on(layout: Layout, preload: Vector | None) -> Layout:
             stiffness[element, axis] = tangent
         else:
             springs[element] = tangent
+    branch = layout.bushings.branch_stiffness.copy()
+    for element, bellows, numbers in zip(*air, strict=True):
+        # The levelled air carries the static force, upwards on the carrier.
+        load = 0.0 if preload is None else -float(preload[layout.bushings.rows[element, 2]])
+        gas, branch[element, 2] = air_stiffness(load, *numbers)
+        stiffness[element, 2] = bellows + gas
     return layout._replace(
         tables=t._replace(at=at),
-        bushings=layout.bushings._replace(stiffness=stiffness),
+        bushings=layout.bushings._replace(stiffness=stiffness, branch_stiffness=branch),
         springs=layout.springs._replace(stiffness=springs),
     )

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.arrays import Vector
-from vehicle.engines.simulation.element_records import Index, Layout, Tables
+from vehicle.engines.simulation.element_records import AirSprings, Index, Layout, Tables
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.model.assembly.element_numbers import AVERAGED, DECOUPLER, FLUID, TURNING
 from vehicle.model.laws.control_laws import NUMBERS, in_steps
@@ -145,6 +145,17 @@ def law_fields(names: LawNames, numbers: Numbers, timestep: float) -> dict[str, 
         # The fluid shortens the chamber by its own motion, and lengthens the rubber by its share of local stiffness.
         "fluids": {"factors": np.array([factor for share in shares for factor in (-1.0, float(share))])},
     }
+
+
+def air_springs(names: LawNames, numbers: Numbers) -> AirSprings:
+    """Return the air springs of a car; arguments: see `law_fields`."""
+    elements = _true_indices(f"air/{name}" in numbers for name in names.bushings)
+    air = [names.bushings[index] for index in elements]
+    return AirSprings(
+        elements=elements,
+        bellows=np.array([numbers[f"law/{name}"][2] for name in air]),
+        numbers=np.reshape([numbers[f"air/{name}"] for name in air], (-1, 3)).astype(float),
+    )
 
 
 def _words(names: LawNames, numbers: Numbers, kind: str) -> list[tuple[int, str]]:

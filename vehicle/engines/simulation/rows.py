@@ -11,7 +11,7 @@ from vehicle.arrays import Vector
 from vehicle.core.records import Packed
 from vehicle.engines.simulation.element_records import Layout, ModalSpace
 from vehicle.engines.simulation.force_curves import standing_on
-from vehicle.engines.simulation.law_arrays import Numbers, law_names, with_numbers
+from vehicle.engines.simulation.law_arrays import Numbers, air_springs, law_names, model_numbers, with_numbers
 from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.engines.simulation.simulation_record import functions, packed_simulation
 from vehicle.engines.simulation.step_records import State, Weights
@@ -78,15 +78,16 @@ class Rows:
 
     Attributes:
         laws: names of all elements. names: names in the order of `layout.bushings`.
+        air: air springs among them.
         layout, weights, state: elements, step weights and state.
     """
 
     def __init__(self, model: mujoco.MjModel, preload: Vector | None = None, space: ModalSpace | None = None) -> None:
         self.model, self.laws, layout = model, law_names(model), read_layout(model)
-        self.names = self.laws.bushings
+        self.names, self.air = self.laws.bushings, air_springs(self.laws, model_numbers(model))
         layout = layout if space is None else layout._replace(space=space)
         force = np.zeros(layout.row_count + 3 * len(layout.rotations.sites)) if preload is None else preload
-        self.layout = standing_on(layout, preload)
+        self.layout = standing_on(layout, self.air, preload)
         self._masses = _row_masses(model, layout)
         self.weights = weights(model, self.layout, force, self._masses)
         self.state = _at_rest(self.layout)
@@ -104,7 +105,7 @@ class Rows:
         """Return a copy at rest with a new state, under these static forces or unchanged ones."""
         other = copy.copy(self)
         if preload is not None:
-            other.layout = standing_on(self.layout, preload)
+            other.layout = standing_on(self.layout, self.air, preload)
             other.weights = weights(self.model, other.layout, preload, self._masses)
         other.state = _at_rest(self.layout)
         return other
@@ -113,7 +114,8 @@ class Rows:
         """Return rows with other law parameters for a linearisation; weights and state remain unchanged."""
         other = copy.copy(self)
         timestep = float(self.model.opt.timestep)
-        other.layout = standing_on(with_numbers(self.layout, self.laws, numbers, timestep), None)
+        other.air = air_springs(self.laws, numbers)
+        other.layout = standing_on(with_numbers(self.layout, self.laws, numbers, timestep), other.air, None)
         return other
 
     def reset(self) -> None:

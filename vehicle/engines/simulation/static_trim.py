@@ -140,15 +140,23 @@ def settle(rows: Rows, design: AtRest, joint_stiffness: Vector) -> Settled:
     """
     settled = _settled(rows, design, joint_stiffness)
     t = rows.layout.tables
-    if not len(t.at):
+    air = rows.air.elements
+    if not len(t.at) and not len(air):
         return settled
     for _ in range(MOST_TRIMS):
-        last, rows.layout = rows.layout, standing_on(rows.layout, settled.preload)
+        last, rows.layout = rows.layout, standing_on(rows.layout, rows.air, settled.preload)
         settled = _settled(rows, design, joint_stiffness)
         now = rows.layout
         same = ((layout.bushings.stiffness, layout.springs.stiffness, layout.tables.at) for layout in (now, last))
         if all(map(np.allclose, *same)):
             break
+    for element in air:
+        load = -float(settled.preload[rows.layout.bushings.rows[element, 2]])
+        if load <= 0.0:
+            raise ConfigurationError(
+                f"the air spring {rows.names[element]}: carries {load:.4g} N in the design position, must be above 0: "
+                "its moving part must be below its carrier, and pressed against it"
+            )
     t = rows.layout.tables
     for index, (law_type, element, axis, at) in enumerate(zip(t.kinds, t.elements, t.axes, t.at, strict=True)):
         if law_type < 2:

@@ -6,11 +6,13 @@ from functools import lru_cache
 import numpy as np
 
 from vehicle.arrays import Vector
+from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.coupled_attachment import STRUCTURAL_LOSS_TIME, coupled_law, is_coupled
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes
 from vehicle.model.laws.amplitude import behind_spring, friction_elements
 from vehicle.model.laws.elastomer import Kelvin, Maxwell, in_series
 from vehicle.model.laws.jenkins import Jenkins
+from vehicle.model.parameters.air_spring import AirSpring
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import PlacedConnection
 from vehicle.model.parameters.force_elements import Bushing, Hydromount, LinearBushing, Tyre
@@ -54,6 +56,7 @@ def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: S
         superelement: model of the body, with the local flexibility of its attachment nodes.
 
     Raises:
+        ConfigurationError: an air spring on a flexible attachment.
         DataError: the body has no node at the connection.
 
     Source: Bommer 2006, section 3.1.3.
@@ -61,6 +64,11 @@ def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: S
     if connection.rolling is not None and isinstance(connection.law, Tyre):
         return _rolling_law(connection.law, connection.rolling.speed)
     flexibility = _flexibility(connection, body, superelement)
+    if flexibility is not None and isinstance(connection.law, AirSpring):
+        raise ConfigurationError(
+            f"{connection.path}.air_area: the body is flexible at this point, in series with which the stiffness of "
+            "air is not known before its load: set body.attachment_flexibility = false"
+        )
     if flexibility is not None and (connection.axes is not None or is_coupled(flexibility)):
         return ElementLaw(
             **coupled_law(connection, flexibility),

@@ -18,6 +18,7 @@ from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws import control_laws
 from vehicle.model.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.model.laws.presliding import presliding_elements
+from vehicle.model.parameters.air_spring import AirSpring
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
 from vehicle.model.parameters.force_elements import Damper, Tyre
@@ -54,6 +55,9 @@ def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superele
         numbers[f"one_sided/{name}"] = np.ones(1)
     if connection.rolling is not None and isinstance(connection.law, Tyre):
         numbers[f"rolling/{name}"] = np.array([connection.rolling.speed, connection.law.trail, *connection.rolling.arm])
+    if isinstance(connection.law, AirSpring):
+        air = connection.law
+        numbers[f"air/{name}"] = np.array([air.air_area, air.air_volume, air.air_area_slope])
     if connection.radius > 0.0:
         numbers[f"round/{name}"] = np.array([connection.radius])
     numbers |= _law_numbers(name, law)

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.air_spring import AIR, AirSpring
 from vehicle.model.parameters.composition import PlacedConnection, PlacedOutput, PlacedPart
 from vehicle.model.parameters.force_elements import DECOUPLER, MAXWELL, TRACK, Bushing, Hydromount, LinearBushing, Tyre
 from vehicle.model.parameters.hardpoints import Axes, Point, axes_along, require_apart, require_point
@@ -37,6 +38,8 @@ def point_of(path: str, value: Any) -> Point:
 
 def law_kind(table: Mapping[str, Any], *, plate: bool = False) -> type[LinearBushing] | type[Hydromount]:
     """Return the parameter class of a connection; `plate`: the connection is a tyre on its plate."""
+    if {*AIR} & set(table):
+        return AirSpring
     return Hydromount if {*MAXWELL, *TRACK, *DECOUPLER} & set(table) else Tyre if plate else Bushing
 
 

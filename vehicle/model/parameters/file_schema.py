@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from vehicle.model.parameters.air_spring import AIR, AirSpring
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.driving import Crank, Driving
@@ -49,6 +50,7 @@ KINDS = (
     Bushing,
     Tyre,
     Hydromount,
+    AirSpring,
     MainSpring,
     SlideSpring,
     Stabilizer,
@@ -163,7 +165,7 @@ def template_schema() -> Schema:
 
 def _vehicle(*, complete: bool) -> Schema:
     """Return the schema of a whole vehicle file, or of a file that changes its base."""
-    laws = _table(Tyre)["properties"] | _table(Hydromount)["properties"] | _table(Bushing)["properties"]
+    laws = _table(Tyre)["properties"] | _table(AirSpring)["properties"] | _table(Bushing)["properties"]
     at = {"at": PLACE}
     connection = {
         "moving": PART,
@@ -245,6 +247,8 @@ def _bushing(parameters: type, lowest_stiffness: float, whole: bool) -> Schema:
     """Return the schema of a connection: a hydromount if a number of its branches is given."""
     branch = {"anyOf": [{"required": [key]} for key in (*MAXWELL, *TRACK, *DECOUPLER)]}
     schema = {"if": branch, "then": _reference(Hydromount, whole), "else": _reference(parameters, whole)}
+    air = {"anyOf": [{"required": [key]} for key in AIR]}
+    schema = {"if": air, "then": _reference(AirSpring, whole), "else": schema}
     return (
         {**schema, "properties": {"stiffness": {"items": {"minimum": lowest_stiffness}}}}
         if lowest_stiffness

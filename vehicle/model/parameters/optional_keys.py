@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from vehicle.model.parameters.air_spring import AirSpring
 from vehicle.model.parameters.body import MAX_MODES, BodyInertia, BodyMode, TrimmedBody
 from vehicle.model.parameters.compose import parameter_kinds
 from vehicle.model.parameters.driving import Crank, Driving
 from vehicle.model.parameters.engine_orders import ENGINE, ORDERS, EngineOrders
-from vehicle.model.parameters.force_elements import Bushing, Damper, Hydromount, MainSpring, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Damper, MainSpring, Tyre
 from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.paths import is_zero_vector
@@ -54,7 +55,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
         # A bushing becomes a hydromount by the numbers of its branch.
         paths += [f"{path}.{key}" for key in _keys(parameters, everything=False)]
         if parameters in (Bushing, Tyre):
-            paths += [f"{path}.{key}" for key in _keys(Hydromount, everything=True)]
+            paths += [f"{path}.{key}" for key in _keys(AirSpring, everything=True)]
     sides = []
     for i in car.values():
         inside = [path.removeprefix(f"{i.name}.") for path in every if path.startswith(f"{i.name}.")]

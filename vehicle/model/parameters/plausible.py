@@ -26,6 +26,7 @@ ENGINE = "engine"
 ENGINE_MASS = (20.0, 1000.0, "an electric motor has 30 kg, a large diesel with its gearbox 600 kg")
 PART_MASS = (0.02, 150.0, "mass of a part: a bolt of a link has 0.02 kg, a wheel of a van 50 kg")
 AXLE_MASS = (0.02, 1000.0, "mass of a part across an axle: a rack has 3 kg, the driven beam of a truck 600 kg")
+HALF_AXLE_MASS = (0.02, 500.0, "half of an axle of one piece: the driven beam of a truck has 600 kg")
 UNIT_MASS = (
     0.02,
     5000.0,
@@ -67,12 +68,16 @@ def _within(path: str, value: float, unit: str, limits: tuple[float, float, str]
 def require_parts(vehicle: Vehicle) -> None:
     """Check mass, inertia and offset of all parts; errors: see `require_plausible`.
 
-    The limits belong to the place of a part: on one side of an axle, across it, or outside the axles.
+    The limits belong to the place of a part: on one side of an axle, half of it, across it, or outside the axles.
     """
     axles: dict[str, tuple[str, ...]] = {}
     for wheel in vehicle.composition.wheels:
         axles[wheel.axle] = (*axles.get(wheel.axle, ()), f"_{wheel.name}")
-    for placed in vehicle.composition.parts:
+    parts = vehicle.composition.parts
+    # A half that is fixed to the same part of the other side, and that part.
+    pairs = [(part.name, part.parent) for part in parts if not part.joints]
+    halves = {name for pair in pairs if _corner(pair[0]) == _corner(pair[1]) for name in pair}
+    for placed in parts:
         part, path = placed.numbers, placed.path
         if isinstance(part, Load):
             continue  # checked by its declaration
@@ -80,6 +85,7 @@ def require_parts(vehicle: Vehicle) -> None:
         mass, gyration = UNIT_MASS, UNIT_GYRATION
         if sides is not None:
             mass, gyration = PART_MASS if placed.name.endswith(sides) else AXLE_MASS, GYRATION
+            mass = HALF_AXLE_MASS if placed.name in halves else mass
         elif placed.name == ENGINE:
             mass, gyration = ENGINE_MASS, GYRATION
         _within(f"{path}.mass", part.mass, "kg", mass)
@@ -90,6 +96,11 @@ def require_parts(vehicle: Vehicle) -> None:
         for axis, offset in zip(AXES, part.offset, strict=True):
             limits = (-OFFSET_M, OFFSET_M, "parts lie near their hardpoints; a value in mm? set metres")
             _within(f"{path}.offset.{axis}", offset, "m", limits)
+
+
+def _corner(name: str) -> str:
+    """Return the name of a part without its side: "axle_r" of "axle_rr"."""
+    return name[:-1] if name.endswith(("r", "l")) else name
 
 
 def _wheel(wheel: PlacedWheel) -> None:

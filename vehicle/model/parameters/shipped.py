@@ -8,6 +8,12 @@ from pathlib import Path
 from vehicle.errors import ConfigurationError
 
 VEHICLES = Path(str(resources.files("vehicle.model"))) / "vehicles"
+OTHER_FILES = frozenset({
+    ".json", ".csv", ".txt", ".tsv", ".xlsx", ".xls", ".ods", ".adm", ".cmd", ".asy", ".sub", ".bin", ".mnf", ".par",
+    ".cpar", ".spck", ".urdf", ".xacro", ".sdf", ".xml", ".tir", ".dpr", ".spr", ".bus", ".bum", ".reb", ".hpt",
+    ".tpl", ".m", ".mat", ".pdf",
+})  # fmt: skip
+"""Endings of files of other programs that people give as a vehicle file."""
 FOCUS_FILE = VEHICLES / "focus" / "vehicle.toml"
 """The Ford-Focus-like car of Bommer 2006."""
 
@@ -27,11 +33,12 @@ def vehicle_file(path: Path | str) -> Path:
         ConfigurationError: neither a file, nor the folder of a car, nor a shipped car; or a car of another program.
     """
     path = Path(path)
-    if path.suffix == ".json":
+    if path.suffix.lower() in OTHER_FILES:
         raise ConfigurationError(
             f"{path}: is not a vehicle file; give a TOML file of a car, its folder, or a shipped car "
-            f"({', '.join(CARS)}). A property file from Adams Car belongs in a vehicle file, for example curve = "
-            "FILE.dpr"
+            f"({', '.join(CARS)}). A table of points, masses and rates (CSV, XLSX), points and parts of an Adams model "
+            "(.adm, .cmd), a URDF and a tyre file (.tir) become a car with vehicle new NAME --table FILE; a property "
+            "file from Adams Car belongs in a vehicle file, for example curve = FILE.dpr"
         )
     if path.is_dir() and (path / "vehicle.toml").is_file():
         return path / "vehicle.toml"

@@ -22,6 +22,9 @@ NO_PART_OF_A_FIT = frozenset(
 )
 """Keys of a law whose change leaves the range valid."""
 
+BAND = "band_"
+"""First letters of the keys of the band of the force."""
+
 Range = tuple[float, ...]
 
 
@@ -56,26 +59,55 @@ class TestedRange:
         length=2, default=None,
     )  # fmt: skip
 
+    band_velocity: Range = quantity(
+        "m/s", "ascending velocities of the band of the force of a damper, without zero, as many on both sides; "
+        "`Car.law_band` runs its edges", at_least=-20.0, at_most=20.0, default=(),
+    )  # fmt: skip
+    band_soft: Range = quantity(
+        "N", "lowest force of the band in the direction of the velocity, minus the force of the law", at_least=-1e6,
+        at_most=0.0, default=(),
+    )  # fmt: skip
+    band_firm: Range = quantity(
+        "N", "highest force of the band in the direction of the velocity, minus the force of the law", at_least=0.0,
+        at_most=1e6, default=(),
+    )  # fmt: skip
+
     def __post_init__(self) -> None:
         validate(self)
+        velocity = self.band_velocity
+        if not len(velocity) == len(self.band_soft) == len(self.band_firm):
+            raise ConfigurationError(
+                f"TestedRange.band_velocity: found {len(velocity)} velocities, {len(self.band_soft)} changes at the "
+                f"soft and {len(self.band_firm)} at the firm edge; give as many of each"
+            )
+        if (
+            list(velocity) != sorted(set(velocity))
+            or 0.0 in velocity
+            or 2 * sum(v > 0.0 for v in velocity) != len(velocity)
+        ):
+            raise ConfigurationError(
+                f"TestedRange.band_velocity: found {list(velocity)}, must be ascending, without zero, and as many "
+                "below as above zero"
+            )
         for entry in fields(self):
             values = getattr(self, entry.name)
-            if values is not None and values[0] > values[1]:
+            if values is not None and not entry.name.startswith(BAND) and values[0] > values[1]:
                 raise ConfigurationError(
                     f"TestedRange.{entry.name}: found {list(values)}, must be the lowest and the highest value of the "
                     "tests, in this order"
                 )
 
 
-def range_lines(tested: Mapping[str, tuple[float, float]]) -> list[str]:
+def range_lines(tested: Mapping[str, Range]) -> list[str]:
     """Return the lines of a range for the table of a law.
 
     Args:
-        tested: lowest and highest values of the tests by key.
+        tested: lowest and highest values of the tests, or values of the band, by key.
     """
     units = {entry.name: entry.metadata["unit"] for entry in fields(TestedRange)}
+    texts = {name: "band of the force" if name.startswith(BAND) else "range of the tests" for name in tested}
     return [
-        f"{RANGE}.{name} = {[rounded(value, 4) for value in values]!r}  # [{units[name]}] range of the tests"
+        f"{RANGE}.{name} = {[rounded(value, 4) for value in values]!r}  # [{units[name]}] {texts[name]}"
         for name, values in tested.items()
     ]
 

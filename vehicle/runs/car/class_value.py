@@ -25,7 +25,7 @@ from vehicle.engines.reduced.road_expectation import (
     track_sources,
     weighting_width,
 )
-from vehicle.engines.reduced.twin_run import damping_of_run, twin_run
+from vehicle.engines.reduced.twin_run import damping_of_run, returning, twin_run
 from vehicle.engines.simulation.recording import Recording
 from vehicle.names import AXES
 from vehicle.runs.car.road import Road
@@ -33,16 +33,11 @@ from vehicle.runs.car.run_twin import TwinCar, damper_channels
 from vehicle.signals.analysis.comfort_error import LEAST_EXPLAINED, NORMAL_95, wave_error
 from vehicle.signals.analysis.evaluated_span import evaluated_span
 from vehicle.signals.analysis.evaluation import application
-from vehicle.signals.analysis.fast_length import fast_length
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED, comfort_columns, waves_of
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.iso_road import IsoRoad
 from vehicle.signals.excitation.road_drive import SHORTEST_SPAN_S, RoadDrive
 from vehicle.signals.excitation.signal import Signal
-
-FALL_S, PAUSE_S = 1.0, 4.0
-"""Times [s] in which the plates return to rest after the record, and in which the twin comes to rest, until it repeats:
-a motion of 1 Hz with a damping ratio of 0.2 decays to 0.7 %."""
 
 
 class ClassValue(NamedTuple):
@@ -81,7 +76,7 @@ def class_values(
         return {}
     laws = [damper.law for damper in car.vehicle.composition.dampers]
     damping = damping_of_run(car.poles, laws, recording.channels, span)
-    plates, length = _returning(signal)
+    plates, length = returning(signal)
     count = round(length / step)
     twin = twin_run(car.poles, damping, plates, length, rail, count)
     records = np.stack([[recording[name] for name in rail], [twin[name][:samples] for name in rail]])
@@ -97,19 +92,6 @@ def class_values(
             half = NORMAL_95 * float(wave_error(left[None])[0]) * ratio
             result[name] = ClassValue(float(value * ratio), half, explained)
     return result
-
-
-def _returning(signal: Signal) -> tuple[dict[str, Vector], float]:
-    """Return the plates of a record, which begin at rest, continued to rest again [m], and the whole length [s]."""
-    fall, step = round(FALL_S / signal.timestep), signal.timestep
-    way = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, fall + 1) / fall))
-    count = signal.time.size
-    total = fast_length(count + fall + round(PAUSE_S / step))
-    plates = {}
-    for wheel, displacement in signal.displacement.items():
-        plates[wheel] = np.zeros(total)
-        plates[wheel][: count + fall] = np.concatenate([displacement, displacement[-1] * way])
-    return plates, total * step
 
 
 def _expected(

@@ -49,11 +49,16 @@ def with_duration(car: Any, source: Source) -> Source:
         source: drive of the car, evaluated from its `skip` on.
 
     Raises:
-        ConfigurationError: a car without a linear twin.
+        ConfigurationError: a car without a linear twin, or a measured profile (`vehicle.runs.car.profile_value`).
         SimulationError: a pilot failed.
     """
     if not isinstance(source, RoadDrive) or source.precision is None:
         return source
+    if not source.repeats:
+        raise ConfigurationError(
+            "--precision: of a measured profile, a run of some pieces gives comfort and tyre loads of the whole in the "
+            "command shaker and in over_profile; leave it out to run the whole profile"
+        )
     wanted, span = source.precision, SHORTEST_SPAN_S
     for pilot in range(1, PILOTS + 1):
         drive = replace(source, precision=None, duration=source.skip + span)

@@ -6,6 +6,8 @@ alike, so the difference between run and twin gives the error of a value of the 
 road. A twin of controlled dampers, or of stops, has their energy too; the explained share measures how alike it is.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
@@ -68,6 +70,11 @@ class TwinLines(NamedTuple):
     mirrored: Mapping[str, Complex]
     """The same with left and right track exchanged; empty on one track."""
 
+    @property
+    def roads(self) -> tuple[TwinLines, ...]:
+        """Return the lines on this road and on the mirrored one; on one track only the first."""
+        return (self, TwinLines(self.frequency, self.mirrored, {})) if self.mirrored else (self,)
+
     def comfort(
         self, points: Sequence[str], *, band: tuple[float, float], contact: str = "seat", axes: bool = False
     ) -> dict[str, Vector]:
@@ -82,8 +89,8 @@ class TwinLines(NamedTuple):
             band, contact, axes: see `comfort_lines`.
         """
         of_roads = []
-        for channels in (self.channels, self.mirrored) if self.mirrored else (self.channels,):
-            lines = [np.stack([channels[f"{point}_acc_{axis}"] for axis in AXES], axis=1) for point in points]
+        for road in self.roads:
+            lines = [np.stack([road.channels[f"{point}_acc_{axis}"] for axis in AXES], axis=1) for point in points]
             of_roads.append(comfort_lines(self.frequency, *lines, band=band, contact=contact, axes=axes))
         values, mirrored = of_roads[0], of_roads[-1]
         phases = {f"{name}{PHASE}": 0.5 * (values[name] - mirrored[name]) for name in values if "_wave_" not in name}

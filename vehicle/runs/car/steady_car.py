@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy.typing as npt
 
 from vehicle.handed_down import HANDED
+from vehicle.runs.car.law_band import BandedCar
 from vehicle.threads import one_blas_thread
 
 if TYPE_CHECKING:
     from vehicle.runs.car.levels import LevelMap, Plates
 
 
-class SteadyCar:
+class SteadyCar(BandedCar):
     """Base of `Car`: periodic states without a start-up, and the diagnosis of a drive."""
 
     def diagnose(self, record: Path | str, speed: float | str | tuple[float, float], **settings: Any) -> Any:

@@ -5,7 +5,7 @@ import numpy as np
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 from vehicle.runs.car.run_twin import TwinLines
-from vehicle.runs.figures.figure import Details, Figure, Reduction, Values
+from vehicle.runs.figures.figure import Details, Figure, Reduction, TwinValues, Values
 from vehicle.runs.figures.rows import unread
 from vehicle.runs.figures.run_batch import Runs
 from vehicle.signals.analysis.comfort_error import wave_error
@@ -40,10 +40,10 @@ def _comfort(point: str, name: str) -> Reduction:
             return Values(columns[column])
         return Values(columns[column], columns[column] * columns[f"{column}{ERROR}"], waves_of(columns, column))
 
-    def lines(_: Complex, details: Details, runs: Runs, twin: TwinLines) -> Complex:
+    def lines(_: Complex, details: Details, runs: Runs, twin: TwinLines) -> TwinValues:
         columns = _of_twin(point, name, runs, twin)
         column = f"{name}_{details.axis}" if details.axis else name
-        return waves_of(columns, column)
+        return TwinValues(columns[column], waves_of(columns, column), columns[column])
 
     return Reduction(of=of, lines=lines, page="comfort" if (point, name) == ("seat_rail", WEIGHTED) else "")
 
@@ -74,11 +74,11 @@ def _ratio_waves(*points: dict[str, Vector]) -> Complex:
     return np.asarray(above - below)
 
 
-def _seat_lines(_: Complex, __: Details, runs: Runs, twin: TwinLines) -> Complex:
+def _seat_lines(_: Complex, __: Details, runs: Runs, twin: TwinLines) -> TwinValues:
     cushion, rail = (_of_twin(point, WEIGHTED, runs, twin) for point in ("seat", "seat_rail"))
     with np.errstate(divide="ignore", invalid="ignore"):
         value = cushion[f"{WEIGHTED}_z"] / rail[f"{WEIGHTED}_z"]
-    return value[:, None] * _ratio_waves(cushion, rail)
+    return TwinValues(value, value[:, None] * _ratio_waves(cushion, rail), value)
 
 
 def _figure(prefix: str, name: str, meaning: str) -> Figure:

@@ -26,7 +26,7 @@ class Values(NamedTuple):
     error: Vector | None = None
     """Standard errors in the unit of the value, (r,); None if unknown."""
     waves: Complex | None = None
-    """Slow variations of an RMS for the error of a difference, see `comfort_error`; (r, `WAVES`)."""
+    """Slow variations of an RMS for the error of a difference, see `comfort_error`; (r, `WAVES` + 1)."""
     explained: Vector | None = None
     """Share of the scatter that the linear twin explains [-]; (r,); None without twins."""
 
@@ -34,6 +34,17 @@ class Values(NamedTuple):
         """Return value and standard error of the first run; None for an unknown or undefined error."""
         error = math.nan if self.error is None else float(self.error[0])
         return float(self.value[0]), error if math.isfinite(error) else None
+
+
+class TwinValues(NamedTuple):
+    """Values of a figure of r linear twins."""
+
+    value: Vector
+    """Values; (r,)."""
+    waves: Complex
+    """Their slow variations; (r, `WAVES` + 1)."""
+    expected: Vector
+    """Their means over the phases of this road, up to what the exchange of its tracks changes; (r,)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -92,12 +103,12 @@ class Reduction:
     Attributes:
         of: values for histories, details and runs.
         page: name of the reduction in the page with sliders (`trial_worker.js`); empty for others.
-        lines: waves of the linear twins, (r, `WAVES`), from lines (r, rows, m); None for a number without waves.
+        lines: value and waves of the linear twins from lines (r, rows, m); None for a number without waves.
     """
 
     of: Callable[[Vector, Details, Runs], Values]
     page: str = ""
-    lines: Callable[[Complex, Details, Runs, TwinLines], Complex] | None = None
+    lines: Callable[[Complex, Details, Runs, TwinLines], TwinValues] | None = None
 
 
 def _accept(*_: object) -> None:

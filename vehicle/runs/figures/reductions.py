@@ -2,7 +2,8 @@
 
 On a random road a figure of one record is an estimate. The standard error of an RMS is that of a Gaussian vibration
 with the spectrum of the record (`vehicle.signals.analysis.comfort_error`); that of a share of time, or of a ratio of
-two RMS values, comes from `BLOCKS` blocks of the record. Extremes, doses and values over one obstacle have none.
+two RMS values, comes from `BLOCKS` blocks of the record. A dose has one on a road that repeats, from its linear twin.
+Extremes, travel, which drifts with friction, and values over one obstacle have none.
 """
 
 from collections.abc import Callable
@@ -13,10 +14,10 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import SATURATED_VELOCITY
 from vehicle.runs.car.run_twin import TwinLines
-from vehicle.runs.figures.figure import Details, Reduction, Values
+from vehicle.runs.figures.figure import Details, Reduction, TwinValues, Values
 from vehicle.runs.figures.rows import recorded, velocities, wheels_of
 from vehicle.runs.figures.run_batch import Runs
-from vehicle.signals.analysis.comfort_error import overall_error, overall_waves
+from vehicle.signals.analysis.comfort_error import overall_error, overall_waves, power_waves
 from vehicle.signals.analysis.comfort_lines import lines_of_share
 from vehicle.signals.analysis.exposure import crest_factor, mtvv, vibration_dose_value
 from vehicle.signals.analysis.samples import Complex, Vector
@@ -65,15 +66,17 @@ def _rms_of_wheels(rows: Vector, details: Details, runs: Runs) -> Values:
     return values if values.waves is None else values._replace(waves=values.waves / np.sqrt(rows.shape[1]))
 
 
-def _line_waves(lines: Complex, details: Details, _: Runs, twin: TwinLines) -> Complex:
-    """Return the waves of the root of a sum of mean squares of lines."""
+def _of_lines(lines: Complex, details: Details, _: Runs, twin: TwinLines) -> TwinValues:
+    """Return the root of a sum of mean squares of lines."""
     if details.band:
         lines = lines_of_share(twin.frequency, lines, (details.band[0], details.band[1]))
-    return overall_waves(lines)
+    value = np.sqrt(np.sum(np.abs(lines) ** 2, axis=(1, 2)))
+    return TwinValues(value, overall_waves(lines), value)
 
 
-def _line_waves_of_wheels(lines: Complex, details: Details, runs: Runs, twin: TwinLines) -> Complex:
-    return np.asarray(_line_waves(lines, details, runs, twin) / np.sqrt(lines.shape[1]))
+def _of_lines_of_wheels(lines: Complex, details: Details, runs: Runs, twin: TwinLines) -> TwinValues:
+    values, root = _of_lines(lines, details, runs, twin), np.sqrt(lines.shape[1])
+    return TwinValues(*(each / root for each in values))
 
 
 def _ratio(rows: Vector, details: Details, runs: Runs) -> Values:
@@ -107,7 +110,26 @@ def _largest_crest(rows: Vector, *_: object) -> Values:
 
 def _dose(rows: Vector, _: Details, runs: Runs) -> Values:
     doses = [[vibration_dose_value(runs.timestep, row) for row in run] for run in rows]
-    return Values(np.sum(np.power(doses, 4), axis=1) ** 0.25)
+    value = np.sum(np.power(doses, 4), axis=1) ** 0.25
+    if runs.twin is None or not runs.errors:
+        return Values(value)
+    return Values(value, np.full(value.size, np.nan), power_waves(value, rows))
+
+
+def _dose_of_lines(lines: Complex, _: Details, runs: Runs, __: TwinLines) -> TwinValues:
+    """Return the dose of lines: their history over one period, and the mean over random phases.
+
+    The lines P_k = |line|^2 of one channel with independent phases have E[a^4] = 3 (sum P_k)^2 - 3/2 sum P_k^2, three
+    times s^4 for many lines, and VDV^4 = T E[a^4].
+    """
+    samples = runs.evaluated.stop - runs.evaluated.start
+    whole = np.zeros((*lines.shape[:2], samples // 2 + 1), dtype=np.complex128)
+    whole[:, :, 1 : lines.shape[2] + 1] = lines * (samples / np.sqrt(2.0))
+    rows, duration = np.fft.irfft(whole, samples, axis=2), samples * runs.timestep
+    value = (duration * np.sum(np.mean(rows**4, axis=2), axis=1)) ** 0.25
+    power = np.abs(lines) ** 2
+    fourth = 3.0 * np.sum(power, axis=2) ** 2 - 1.5 * np.sum(power**2, axis=2)
+    return TwinValues(value, power_waves(value, rows), (duration * np.sum(fourth, axis=1)) ** 0.25)
 
 
 def require_obstacle(_: object, __: object, left_obstacle: float | None) -> None:
@@ -170,8 +192,8 @@ def _first_slip(_: Vector, details: Details, runs: Runs) -> Values:
     return Values(np.fmin.reduce(each))
 
 
-RMS = Reduction(of=_rms_of_channels, page="rms", lines=_line_waves)
-WHEEL_RMS = Reduction(of=_rms_of_wheels, page="wheel_rms", lines=_line_waves_of_wheels)
+RMS = Reduction(of=_rms_of_channels, page="rms", lines=_of_lines)
+WHEEL_RMS = Reduction(of=_rms_of_wheels, page="wheel_rms", lines=_of_lines_of_wheels)
 RATIO = Reduction(of=_ratio)
 PEAK = Reduction(of=lambda rows, *_: Values(np.abs(rows).max(axis=(1, 2))), page="peak")
 PEAK_TO_PEAK = Reduction(of=lambda rows, *_: Values(np.ptp(rows, axis=2).max(axis=1)), page="peak_to_peak")
@@ -180,7 +202,7 @@ LARGEST_CREST = Reduction(of=_largest_crest, page="largest_crest")
 MTVV = Reduction(
     of=lambda rows, _, runs: Values(np.array([max(mtvv(runs.timestep, row) for row in run) for run in rows]))
 )
-DOSE = Reduction(of=_dose)
+DOSE = Reduction(of=_dose, lines=_dose_of_lines)
 SETTLING = Reduction(of=_settling)
 SLIP = Reduction(of=_slip)
 STICK = Reduction(of=_stick)

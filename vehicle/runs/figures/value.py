@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Run
 from vehicle.runs.figures.chosen_figure import ChosenFigure, chosen_figure
@@ -30,8 +32,11 @@ def values_of(chosen: ChosenFigure, runs: Runs) -> Values:
         return values
     if not {*chosen.channels_of(runs.vehicles[0])} <= {*twin.channels}:
         return values
-    waves = figure.reduces.lines(figure.reads.lines(chosen, runs, twin), chosen, runs, twin)
-    return Values(values.value, *paired(values.error, values.waves, waves))
+    of_twins, reduce = [], figure.reduces.lines
+    for road in twin.roads:
+        of_twins.append(reduce(figure.reads.lines(chosen, runs, road), chosen, runs, road))
+    phase = of_twins[0].value - np.mean([each.expected for each in of_twins], axis=0)
+    return Values(values.value, *paired(values.error, values.waves, of_twins[0].waves, phase))
 
 
 def require_unit(chosen: ChosenFigure, unit: str, units: Mapping[str, str]) -> None:

@@ -44,7 +44,7 @@ class ComfortValues:
     error: Vector
     """normalised standard error of `overall`, see `vehicle.signals.analysis.comfort_error` [-], shape (r,)"""
     waves: Complex
-    """slow variations of `overall`, see `vehicle.signals.analysis.comfort_error` [m/s2], shape (r, WAVES)"""
+    """slow variations of `overall`, see `vehicle.signals.analysis.comfort_error` [m/s2], shape (r, WAVES + 1)"""
     lines: Complex
     """lines of the periodogram in the band, |line|^2 = S df; shape (r, 3, m)"""
 

@@ -30,7 +30,9 @@ twin, the waves that are left are
     R_m = C_m - b C'_m,    b = Re sum C'_m^* C_m / sum |C'_m|^2,
 
 widened for the fitted b, and mean |R_m|^2 is the variance of the value over roads of the class (`paired`), mean
-|R_m,a - R_m,b|^2 that of a difference.
+|R_m,a - R_m,b|^2 that of a difference. What the phases of this road add to the value of the twin,
+`vehicle.runs.car.run_twin`, is known, p, and is stored as one more wave, of such a size that the intervals contain
++-1.96 p of a value and +-1.96 (p_a - p_b) of a difference.
 
 Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and Welch, Communications of the ACM 24
 (1981): variance of a mean from the spectrum near zero frequency; Ripley, Stochastic Simulation (1987), section 5.3:
@@ -55,6 +57,9 @@ NORMAL_95 = 1.96
 STUDENT_95 = 2.446911851
 """The same for an error that is itself estimated with 2 `WAVES` degrees of freedom: t_0.975 with 6 of them."""
 
+OF_PHASE = float(np.sqrt(WAVES)) * NORMAL_95 / STUDENT_95
+"""Size of the wave of the phases over p."""
+
 WIDENED = float(np.sqrt(6.0 / 5.0)) * 2.570581836 / STUDENT_95
 """Factor on waves from which one degree of freedom is taken by a fit, with t_0.975 of the 5 left: then `STUDENT_95`
 fits them too."""
@@ -65,11 +70,11 @@ the error of the run alone counts."""
 
 
 class Paired(NamedTuple):
-    """Error of values of which the linear twin on the same road is known; (r,) each, waves (r, `WAVES`).
+    """Error of values of which the linear twin on the same road is known; (r,) each, waves (r, `WAVES` + 1).
 
     Attributes:
         error: standard error, see `wave_error`; of the run alone where the twin explains less than half.
-        waves: waves R_m that the twin does not explain.
+        waves: waves R_m that the twin does not explain, and that of the phases.
         explained: share of the scatter that the twin explains, 1 - sum |R_m|^2 / sum |C_m|^2 [-]; NaN without a twin.
     """
 
@@ -79,30 +84,33 @@ class Paired(NamedTuple):
 
 
 def wave_error(waves: Complex) -> Vector:
-    """Return the standard error of values from their waves, (r, `WAVES`), in the unit of the waves; (r,).
+    """Return the standard error of values from their waves, (r, `WAVES` + 1), in the unit of the waves; (r,).
 
     The estimate has 2 `WAVES` degrees of freedom. It is widened, so that `NORMAL_95` errors are the half width of the
     95 % interval of Student's t.
     """
-    return np.asarray(STUDENT_95 / NORMAL_95 * np.sqrt(np.mean(np.abs(waves) ** 2, axis=1)))
+    return np.asarray(STUDENT_95 / NORMAL_95 * np.sqrt(np.sum(np.abs(waves) ** 2, axis=1) / WAVES))
 
 
-def paired(error: Vector, waves: Complex, twin_waves: Complex) -> Paired:
+def paired(error: Vector, waves: Complex, twin_waves: Complex, phase: Vector | float = 0.0) -> Paired:
     """Return the error of values with their linear twins, see `Paired`.
 
     Args:
         error: standard errors of r runs without twins; (r,).
-        waves: C_m of the runs; (r, WAVES).
-        twin_waves: C'_m of the twins; 0 without a twin.
+        waves: C_m of the runs, the last 0; (r, WAVES + 1).
+        twin_waves: C'_m of the twins, the last 0; 0 without a twin.
+        phase: what the phases of this road add to the values of the twins; (r,).
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         factor = np.sum((twin_waves.conj() * waves).real, axis=1) / np.sum(np.abs(twin_waves) ** 2, axis=1)
         residual = waves - factor[:, None] * twin_waves
         explained = 1.0 - np.sum(np.abs(residual) ** 2, axis=1) / np.sum(np.abs(waves) ** 2, axis=1)
     defined = np.isfinite(explained)
+    left = WIDENED * residual
+    left[:, -1] = OF_PHASE * phase
     return Paired(
-        error=np.where(defined & (explained >= LEAST_EXPLAINED), wave_error(WIDENED * residual), error),
-        waves=np.where(defined[:, None], WIDENED * residual, waves),
+        error=np.where(defined & (explained >= LEAST_EXPLAINED), wave_error(left), error),
+        waves=np.where(defined[:, None], left, waves),
         explained=explained,
     )
 
@@ -149,10 +157,11 @@ def overall_waves(lines: Complex) -> Complex:
         lines: complex lines of the periodogram, |line|^2 = S df; (r, axes, m).
 
     Returns:
-        C_m [unit of the lines], 0 where the record has too few lines; (r, WAVES).
+        C_m [unit of the lines], 0 where the record has too few lines, and a 0 for the wave of the phases;
+        (r, WAVES + 1).
     """
     rms = np.sqrt(np.sum(np.abs(lines) ** 2, axis=(1, 2)))
-    waves = np.zeros((len(lines), WAVES), dtype=np.complex128)
+    waves = np.zeros((len(lines), WAVES + 1), dtype=np.complex128)
     for number in range(min(WAVES, lines.shape[2] - 1)):
         shift = number + 1
         waves[:, number] = np.sum(lines[:, :, :-shift].conj() * lines[:, :, shift:], axis=(1, 2))
@@ -160,13 +169,33 @@ def overall_waves(lines: Complex) -> Complex:
     return normalised
 
 
+def power_waves(value: Vector, rows: Vector) -> Complex:
+    """Return the slow variations of a fourth root of a mean of fourth powers, V = (c mean a^4)^(1/4), as in a dose.
+
+    They are the Fourier lines q_m of sum a^4 over the channels, times dV/dq = V/(4 mean a^4), as C_m are those of the
+    mean square: with a flat spectrum near 0 Hz each has the variance of V.
+
+    Args:
+        value: V; (r,).
+        rows: histories a of all channels over the evaluated span; (r, channels, n).
+
+    Returns:
+        Waves, 0 at rest, and a 0 for that of the phases; (r, WAVES + 1).
+    """
+    power = np.sum(rows**4, axis=1)
+    lines = np.fft.rfft(power, axis=1)[:, : WAVES + 1]
+    mean = lines[:, :1].real
+    waves = np.divide(0.25 * value[:, None] * lines, mean, out=np.zeros_like(lines), where=mean > 0.0)
+    return np.asarray(np.roll(waves, -1, axis=1) * np.array([1.0] * WAVES + [0.0]))
+
+
 def difference_error(first: Complex, second: Complex) -> Vector:
     """Return the standard error of the difference of two overall RMS values on the same road.
 
     Args:
-        first, second: C_m of both runs, see `overall_waves`; (..., WAVES).
+        first, second: C_m of both runs, see `overall_waves`; (..., WAVES + 1).
 
     Returns:
         Standard error with 2 `WAVES` degrees of freedom, in the unit of the C_m; (...).
     """
-    return np.asarray(np.sqrt(np.mean(np.abs(first - second) ** 2, axis=-1)))
+    return np.asarray(np.sqrt(np.sum(np.abs(first - second) ** 2, axis=-1) / WAVES))

@@ -43,13 +43,13 @@ EXPLAINED = "_explained"
 
 
 def wave_names(name: str) -> tuple[str, ...]:
-    """Return the names of the values C_m of a comfort value, which have no column in a table.
+    """Return the names of the values C_m of a comfort value and of the wave of the phases: no columns of a table.
 
     Args:
         name: `UNWEIGHTED` or `WEIGHTED`, with the prefix of its point; for C_m see
             `vehicle.signals.analysis.comfort_error`.
     """
-    return tuple(f"{name}_wave_{number}_{part}" for number in range(1, WAVES + 1) for part in ("re", "im"))
+    return tuple(f"{name}_wave_{number}_{part}" for number in range(1, WAVES + 2) for part in ("re", "im"))
 
 
 MEANING = {UNWEIGHTED: "RMS in 2 to 50 Hz", WEIGHTED: "RMS after the weightings of a seat (ISO 2631-1)"}
@@ -178,27 +178,26 @@ def with_twins(columns: Mapping[str, Vector], twins: Mapping[str, Vector]) -> di
     for name in (column.removesuffix(ERROR) for column in columns if column.endswith(ERROR)):
         value, error = columns[name], columns[f"{name}{ERROR}"]
         waves, of_twins = (waves_of(each, name) for each in (columns, twins))
-        pair = paired(error * value, waves, of_twins)
-        total = np.hypot(pair.error, twins.get(f"{name}{PHASE}", 0.0))
-        relative = np.divide(total, value, out=np.zeros_like(value), where=value > 0.0)
+        pair = paired(error * value, waves, of_twins, twins[f"{name}{PHASE}"])
+        relative = np.divide(pair.error, value, out=np.zeros_like(value), where=value > 0.0)
         result |= _errors(name, relative, pair.waves) | {f"{name}{EXPLAINED}": pair.explained}
     return result
 
 
 def waves_of(columns: Mapping[str, Vector], name: str) -> Complex:
-    """Return the C_m of a comfort value from its columns; (r, `WAVES`)."""
+    """Return the C_m of a comfort value from its columns; (r, `WAVES` + 1)."""
     parts = np.stack([columns[each] for each in wave_names(name)], axis=1)
     return np.asarray(np.ascontiguousarray(parts, dtype=np.float64).view(np.complex128))
 
 
 def wave_columns(name: str, waves: Complex) -> dict[str, Vector]:
-    """Return the columns of the waves of a comfort value, (r, `WAVES`)."""
+    """Return the columns of the waves of a comfort value, (r, `WAVES` + 1)."""
     # As reals, the complex values alternate real and imaginary parts, in the order of the names.
     return dict(zip(wave_names(name), waves.view(np.float64).T, strict=True))
 
 
 def _errors(name: str, error: Vector, waves: Complex) -> dict[str, Vector]:
-    """Return the columns of the error of a comfort value, (r,), and of its waves, (r, `WAVES`)."""
+    """Return the columns of the error of a comfort value, (r,), and of its waves, (r, `WAVES` + 1)."""
     return {f"{name}{ERROR}": error, **wave_columns(name, waves)}
 
 

@@ -70,7 +70,8 @@ class RoadDrive:
         track: distance of the two tracks [m].
         duration: length [s]; by default 60 s of a class, a whole profile, or an obstacle and 3 s after it.
         precision: wanted half of the 95 % interval of the weighted comfort [%], from which
-            `vehicle.runs.car.road_precision` chooses the duration; None with a duration.
+            `vehicle.runs.car.road_precision` chooses the duration of a class, and `vehicle.runs.car.profile_value` the
+            pieces of a profile; None with a duration.
         chosen: message on this choice; empty without one.
         rate: sampling rate [Hz].
         seed: seed of a class.
@@ -114,9 +115,12 @@ class RoadDrive:
         if isinstance(self.road, Path) or on_obstacle or self.road == LEVEL:
             if self.coherence is not None:
                 raise ConfigurationError("--coherence: works only with a road class; leave it out")
-            for name in ("period", "precision"):
-                if getattr(self, name) is not None:
-                    raise ConfigurationError(f"--{name}: works only with a road class; leave it out")
+            if self.period is not None:
+                raise ConfigurationError("--period: works only with a road class; leave it out")
+            if self.precision is not None and not isinstance(self.road, Path):
+                raise ConfigurationError(
+                    "--precision: works only with a road class or a measured profile; leave it out"
+                )
             if on_obstacle:
                 Obstacle.parse(str(self.road))
         elif self.road not in CLASSES:
@@ -137,7 +141,8 @@ class RoadDrive:
         """Check that the road is one whose error is known from a short run."""
         reasons = {
             "and --duration exclude each other; leave one of them out": self.duration is not None,
-            "needs a road that repeats; leave --period record out, or set --duration": not self.repeats,
+            "needs a road that repeats; leave --period record out, or set --duration": self.road in CLASSES
+            and not self.repeats,
             "is not known with cams, which have no linear twin; set --contact patch, or --duration": self.envelope,
         }
         for reason, applies in reasons.items():

@@ -17,7 +17,8 @@ class RoadSettings(Settings):
     )
     precision: float | None = setting(
         "half of the 95-percent interval of the weighted comfort, in percent, for which pilot runs with the reduced "
-        "engine choose the length of the drive, in place of its duration: 6 to 600 s are evaluated",
+        "engine choose the length of the drive, in place of its duration: 6 to 600 s are evaluated; of a measured "
+        "profile (shaker) they choose pieces, whose run gives comfort and tyre loads of the whole",
         within="(0, 100)",
         type=float,
         metavar="P",

@@ -17,6 +17,9 @@ from vehicle.studies.dampers.damper_force import steady_force
 from vehicle.studies.dampers.damper_ranges import RATIO, SHARE
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
+STORED = 10
+"""Number of velocities of each sign in a vehicle file."""
+
 POINTS, BELOW = 60, 10.0
 """Number of velocities of each sign, and ratio of the slowest test to the lowest of them."""
 
@@ -42,6 +45,25 @@ def band_of(fitted: FittedDamper) -> Band:
         limits += [force - spread, force + spread]
     force = steady_force(fitted.fit.law, fitted.fit.parameters, velocity)[0]
     return Band(velocity, force, np.min(limits, axis=0), np.max(limits, axis=0))
+
+
+def stored_band(fitted: FittedDamper) -> dict[str, tuple[float, ...]]:
+    """Return the band for a vehicle file, by the keys of `TestedRange`: velocities, and changes of the force [N].
+
+    In the direction of the velocity the force of an edge is at least zero: a damper takes energy.
+    """
+    band = band_of(fitted)
+    half = np.linspace(0, POINTS - 1, STORED).round().astype(int)
+    rows = np.concatenate([POINTS - 1 - half[::-1], POINTS + half])
+    sign = np.sign(band.velocity)
+    force = sign * band.force
+    edges = [np.maximum(sign * each, 0.0) for each in (band.lowest, band.highest)]
+    changes = np.minimum(*edges) - force, np.maximum(*edges) - force
+    soft, firm = np.minimum(changes[0], 0.0), np.maximum(changes[1], 0.0)
+    return {
+        name: tuple(values[rows].tolist())
+        for name, values in (("band_velocity", band.velocity), ("band_soft", soft), ("band_firm", firm))
+    }
 
 
 def band_text(band: Band) -> str:

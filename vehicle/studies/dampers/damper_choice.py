@@ -33,21 +33,24 @@ from vehicle.errors import DataError
 from vehicle.studies.dampers.damper_fit import (
     DamperFit,
     covariances,
-    deviations,
     finished,
     fit_law,
+    fitted_squares,
+    parameter_squares,
     squares_of,
-    starts_of,
 )
-from vehicle.studies.dampers.damper_force import force_and_slopes
 from vehicle.studies.dampers.damper_law import DamperLaw
 from vehicle.studies.dampers.damper_ranges import range_errors
+from vehicle.studies.dampers.damper_starts import first_start, starts_from_larger, starts_of
 from vehicle.studies.dampers.damper_test import DamperTest
 from vehicle.studies.dampers.waveform import reversals
 from vehicle.threads import one_blas_thread
 
 PER_CYCLE, CYCLES = 250, 2
 """Samples of a cycle, and settled cycles of a periodic test, with which laws are compared; the chosen law has all."""
+
+GROUPS = 2000
+"""Number of means of a test with a changing setting."""
 
 JUMP, AFTER = 0.1, 12
 """Change of the velocity in a sample, over its maximum, after which `AFTER` samples stay single; as many do before and
@@ -58,6 +61,9 @@ FEW_TESTS, PARTS = 3, 4
 
 FOLDS = 6
 """Maximum number of fits with tests left out; above it several tests are left out together."""
+
+RETRIED = 12
+"""Maximum number of evaluations of a start for a law that was fitted from other starts before."""
 
 BEAM = 2
 """Number of laws that get a further part at a time."""
@@ -71,6 +77,10 @@ a damper within this are alike."""
 
 RELEVANT = 0.03
 """Relative difference of two errors, with `FLOOR` in them, that is a reason for a further part."""
+
+NEAR = 1.25
+"""Largest ratio of the error of a law to the best error left out, up to which the law is judged, and its own smaller
+laws are fitted from it: above the tolerance of the choice."""
 
 WORST = 1.5
 """Largest ratio of the errors of a law and of the best law on a test left out: the accuracy of stated errors."""
@@ -126,7 +136,8 @@ def without(tests: Sequence[DamperTest], law: DamperLaw, start: Vector, masks: S
 def thinned(test: DamperTest) -> DamperTest:
     """Return a test with means over parts of a cycle, of a periodic test at most `CYCLES` cycles.
 
-    Samples stay single where the velocity changes fast, and around reversals.
+    Samples stay single where the velocity changes fast, and around reversals. With a changing setting the means are
+    over equal groups, at most `GROUPS` of them.
     """
     last = test.time.size
     if test.waveform.periodic:
@@ -136,6 +147,8 @@ def thinned(test: DamperTest) -> DamperTest:
     stroke = np.abs(np.diff(test.displacement, prepend=test.displacement[0])) / np.ptp(test.displacement)
     count = np.floor(np.cumsum(PER_CYCLE * (change / 8.0 + stroke / 4.0)))
     first = np.diff(count, prepend=-1.0) > 0.0
+    if test.setting is not None:
+        first = np.arange(test.time.size) % -(-test.time.size // GROUPS) == 0
     for jump in np.flatnonzero(change > JUMP):
         first[max(jump - 1, 0) : jump + AFTER] = True
     for turn in reversals(test.displacement, test.velocity):
@@ -155,25 +168,7 @@ def choose_law(
     if not tests:
         raise DataError("the tests are missing; name at least one file with a damper test")
     few = [thinned(test) for test in tests]
-    first = DamperLaw()
-    size = max(test.scale for test in few) / max(float(np.std(test.velocity)) for test in few)
-    front = [judged(few, first, [np.array([0.0, size])])]
-    fits = {first: front[0]}
-    while front:
-        lowest_error = min(fit.left_out_error for fit in fits.values())
-        new = []
-        for smaller in front:
-            for law in smaller.law.larger():
-                if law not in fits:
-                    fits[law] = judged(few, law, starts_of(law, smaller, few))
-                    new.append(fits[law])
-                    if progress is not None:
-                        progress(len(fits))
-        front = [
-            fit
-            for fit in sorted(new, key=lambda fit: fit.left_out_error)[:BEAM]
-            if fit.left_out_error * (1.0 + RELEVANT) < lowest_error
-        ]
+    fits = LawSearch(few, progress).run()
     compared = sorted(fits.values(), key=lambda fit: fit.left_out_error)
     errors = standard_errors(few, compared[0])
     accepted = [is_accepted(compared[0], fit, errors) for fit in compared]
@@ -189,6 +184,80 @@ def choose_law(
     return chosen, compared
 
 
+class LawSearch:
+    """Fits of laws, each larger or smaller by a part than another.
+
+    A law grows while its error left out falls. Then the laws with one part less than the best are fitted from its
+    parameters, and so on while they stay near the best: a law that grew from a poor fit may be in a poor minimum. A law
+    that is so fitted better grows again.
+    """
+
+    def __init__(self, tests: Sequence[DamperTest], progress: Callable[[int], None] | None) -> None:
+        self.tests, self.progress = tests, progress or (lambda count: None)
+        self.fits: dict[DamperLaw, DamperFit] = {}
+        self.squares: dict[DamperLaw, Vector] = {}  # mean squares of the errors of all fitted laws; (tests,) each
+
+    def run(self) -> dict[DamperLaw, DamperFit]:
+        """Return all fits by their laws."""
+        first = DamperLaw(setting="lag" if self.tests[0].setting is not None else "")
+        self._fit(first, first_start(first, self.tests))
+        improved = [self.fits[first]]
+        while improved:
+            self._grow(improved)
+            improved = self._shrink()
+        return self.fits
+
+    def _fit(self, law: DamperLaw, starts: Sequence[Vector]) -> bool:
+        """Fit a law from some starts; return True if it is judged: new or fitted better than before, and not poor."""
+        # A law that is known already is tried with a few steps only: a better minimum shows early.
+        parameters = fit_law(self.tests, law, starts, evaluations=RETRIED if law in self.squares else 40)
+        errors = fitted_squares(self.tests, law, parameters)
+        if law in self.squares and np.sum(errors) * (1.0 + RELEVANT) ** 2 > np.sum(self.squares[law]):
+            return False
+        self.squares[law] = errors
+        self.progress(len(self.squares))
+        # The error left out is hardly below the error of the fit.
+        if self.fits and np.exp(0.5 * np.mean(np.log(errors + FLOOR**2))) > NEAR * self.lowest_error:
+            return False
+        self.fits[law] = judged(self.tests, law, [parameters])
+        return True
+
+    @property
+    def lowest_error(self) -> float:
+        """Smallest error left out of all fits."""
+        return min(fit.left_out_error for fit in self.fits.values())
+
+    def _grow(self, front: list[DamperFit]) -> None:
+        """Add parts to some laws while their errors left out fall, `BEAM` laws at a time."""
+        while front:
+            lowest_error = self.lowest_error
+            new: dict[DamperLaw, DamperFit] = {}
+            for smaller in front:
+                for law in smaller.law.larger():
+                    if self._fit(law, starts_of(law, smaller, self.tests)):
+                        new[law] = self.fits[law]
+            front = [
+                fit
+                for fit in sorted(new.values(), key=lambda fit: fit.left_out_error)[:BEAM]
+                if fit.left_out_error * (1.0 + RELEVANT) < lowest_error
+            ]
+
+    def _shrink(self) -> list[DamperFit]:
+        """Fit the laws with one part less than the best, and so on; return the laws that are fitted better so."""
+        improved: dict[DamperLaw, DamperFit] = {}
+        front = [min(self.fits.values(), key=lambda fit: fit.left_out_error)]
+        while front:
+            new: dict[DamperLaw, DamperFit] = {}
+            for larger in front:
+                for law in larger.law.smaller():
+                    if self._fit(law, starts_from_larger(law, larger)):
+                        new[law] = self.fits[law]
+            near = [fit for fit in new.values() if fit.left_out_error < NEAR * self.lowest_error]
+            front = sorted(near, key=lambda fit: fit.left_out_error)[:BEAM]
+            improved |= {fit.law: fit for fit in front}
+        return list(improved.values())[:BEAM]
+
+
 def standard_errors(tests: Sequence[DamperTest], fit: DamperFit) -> Vector:
     """Return the standard errors of the logarithms of the errors left out; (tests,)."""
     variances = np.zeros(len(tests))
@@ -198,8 +267,7 @@ def standard_errors(tests: Sequence[DamperTest], fit: DamperFit) -> Vector:
         spreads = covariances(tests, fit.law, parameters, remaining)
         for at, (test, mask) in enumerate(zip(tests, masks, strict=True)):
             if mask.any():
-                slopes = force_and_slopes(fit.law, parameters, test.motion)[1]
-                squares = (deviations(spreads, slopes[mask]) / test.scale) ** 2
+                squares = parameter_squares(fit.law, parameters, spreads, test)[mask]
                 variances[at] += np.sum(squares * test.weights[mask]) / np.sum(test.weights[test.settled])
     means = np.mean(fit.blocks, axis=1)
     between = np.var(fit.blocks, axis=1, ddof=1) / fit.blocks.shape[1]

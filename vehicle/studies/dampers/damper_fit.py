@@ -13,6 +13,8 @@ any way), or of independent residuals of equal size in each test where these are
 Source of the blocks: Liang and Zeger, Biometrika 73 (1986).
 """
 
+from __future__ import annotations
+
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -22,7 +24,7 @@ import scipy
 
 from vehicle.arrays import Mask, Vector
 from vehicle.studies.dampers.damper_force import force_and_slopes
-from vehicle.studies.dampers.damper_law import LINEAR, DamperLaw, plain_parameters, sums_of
+from vehicle.studies.dampers.damper_law import FIRM, LINEAR, DamperLaw, plain_parameters, sums_of
 from vehicle.studies.dampers.damper_test import DamperTest
 
 DETERMINED = 0.5
@@ -33,7 +35,7 @@ LARGEST = 1e6
 
 RANGES = {
     "damping": (1.0, 1e6),
-    "velocity": (2e-4, 5.0),
+    "velocity": (1e-3, 5.0),  # a bend below is friction
     "friction": (0.1, 1e5),
     "friction_at_rest": (0.1, 1e5),
     "stribeck_velocity": (5e-4, 1.0),
@@ -41,7 +43,12 @@ RANGES = {
     "slider_stroke": (5e-6, 0.05),
     "gas_stiffness": (0.0, 1e6),
     "series_stiffness": (1e4, 1e9),
+    "gap": (1e-5, 0.1),
+    "outer_friction": (0.1, 1e5),
     "gas_force": (-1e5, 1e5),
+    "lag": (1e-4, 10.0),
+    "saturation": (0.05, 20.0),
+    "delay": (0.0, 0.2),
 }
 """Ranges of the parameters in SI units, within the ranges of the vehicle file."""
 
@@ -66,6 +73,8 @@ class DamperFit:
     tolerance: float = np.nan  # of the logarithm of the error left out, in the choice of this law
     # errors of ranges that the fit does not contain, see `damper_choice.range_errors`: range to (tests,)
     ranges: Mapping[str, Vector] = field(default_factory=dict)
+    systematic: float = np.inf  # RMS of the systematic part of the residuals, over the standard deviation of the force
+    half_of: DamperLaw | None = None  # law with a changing setting, of which this is the soft or the firm one
 
     @property
     def left_out_error(self) -> float:
@@ -78,9 +87,22 @@ class DamperFit:
         return np.asarray(0.5 * np.log(np.mean(self.blocks, axis=1)))
 
     @property
+    def tested_law(self) -> DamperLaw:
+        """The law that was compared: with its changing setting, if it has one."""
+        return self.half_of or self.law
+
+    @property
     def values(self) -> Vector:
         """Parameters with the velocities of breakpoints; (p,)."""
         return plain_parameters(self.law, self.parameters)
+
+    def at_setting(self, firm: bool) -> DamperFit:
+        """Return the soft or the firm law of a damper whose setting changes during the tests, with the same errors."""
+        half = self.law.halves[firm]
+        plain = dataclasses.replace(self, law=self.law.passive, half_of=self.law, parameters=self.parameters[half])
+        if not self.errors.size:
+            return plain
+        return dataclasses.replace(plain, errors=self.errors[half], spreads=self.spreads[:, half][:, :, half])
 
     @property
     def determined(self) -> Mask:
@@ -93,8 +115,8 @@ class DamperFit:
 
 
 def kind_of(name: str) -> str:
-    """Return the name of a parameter without side and number, a key of `RANGES`."""
-    return name.removeprefix("rebound_").removeprefix("bump_").rstrip("0123456789").rstrip("_")
+    """Return the name of a parameter without setting, side and number, a key of `RANGES`."""
+    return name.removeprefix(FIRM).removeprefix("rebound_").removeprefix("bump_").rstrip("0123456789").rstrip("_")
 
 
 def limits_of(law: DamperLaw) -> tuple[Vector, Vector]:
@@ -116,7 +138,7 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
     chosen = [test.settled for test in tests] if masks is None else masks
     used = [(test, mask) for test, mask in zip(tests, chosen, strict=True) if mask.any()]
     linear = np.array([name in LINEAR for name in law.parameters])
-    scale = np.array([{"gas_force": 100.0, "gas_stiffness": 1e3}.get(name, 1.0) for name in law.parameters])
+    scale = np.array([LINEAR.get(name, 1.0) for name in law.parameters])
     low, high = limits_of(law)
 
     def internal(values: Vector) -> Vector:
@@ -159,38 +181,6 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
     return plain(min(results, key=lambda each: float(each.cost)).x)
 
 
-def starts_of(law: DamperLaw, smaller: DamperFit, tests: Sequence[DamperTest]) -> list[Vector]:
-    """Return start values of a law from the fit of a law with one part less."""
-    force = max(test.scale for test in tests)
-    speed = max(float(np.percentile(np.abs(test.velocity), 95.0)) for test in tests)
-    previous = dict(zip(smaller.law.parameters, smaller.parameters.tolist(), strict=True))
-    starts = []
-    for share in (0.1, 0.4):
-        new = {
-            "friction": share * force, "friction_at_rest": 0.3 * previous.get("friction", share * force),
-            "stribeck_velocity": 0.2 * share * speed, "gas_stiffness": 100.0, "gas_force": previous["gas_force"],
-            "series_stiffness": force / (speed * (3e-4 if share < 0.2 else 5e-3)),
-        }  # fmt: skip
-        for i in range(law.elements):
-            new |= {f"slider_limit_{i + 1}": share * force, f"slider_stroke_{i + 1}": 1e-3 * 4.0**-i}
-        for side in law.sides:
-            fallback = previous.get(f"{side}damping_1") or previous.get("damping_1") or previous["rebound_damping_1"]
-            for j in range(law.bends + 1):
-                beyond = law.bends > smaller.law.bends
-                before = previous.get(f"{side}damping_{j + 1}") or previous.get(f"damping_{j + 1}")
-                if beyond:
-                    shifted = previous.get(f"{side}damping_{j}") or previous.get(f"damping_{j}") or fallback
-                    before = shifted if j else (1.5 + 3.0 * share) * fallback
-                new[f"{side}damping_{j + 1}"] = before or fallback
-                if j < law.bends:
-                    width = previous.get(f"{side}velocity_{j}") or previous.get(f"velocity_{j}") or share * speed
-                    same = previous.get(f"{side}velocity_{j + 1}") or previous.get(f"velocity_{j + 1}")
-                    new[f"{side}velocity_{j + 1}"] = (width if j else share * speed / law.bends) if beyond else same
-        merged = new | {name: value for name, value in previous.items() if law.bends == smaller.law.bends}
-        starts.append(np.array([merged[name] for name in law.parameters]))
-    return starts
-
-
 def squares_of(tests: Sequence[DamperTest], law: DamperLaw, parameters: Vector) -> list[Vector]:
     """Return the squares of the errors of a law over the variance of the force in each test, at most `LARGEST`."""
     squares = []
@@ -201,15 +191,28 @@ def squares_of(tests: Sequence[DamperTest], law: DamperLaw, parameters: Vector) 
     return squares
 
 
+def fitted_squares(tests: Sequence[DamperTest], law: DamperLaw, parameters: Vector) -> Vector:
+    """Return the weighted mean square of the error over the settled samples of each test, as in `squares_of`."""
+    squares = squares_of(tests, law, parameters)
+    return np.array(
+        [np.average(e[t.settled], weights=t.weights[t.settled]) for e, t in zip(squares, tests, strict=True)]
+    )
+
+
 def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
     """Return a fit of all samples, with standard errors and the errors of each test."""
     parameters = fit_law(tests, fit.law, [fit.parameters], tolerance=1e-7)
+    # Neighbours have independent noise: their mean product is the square of what they have in common.
+    common = [
+        np.mean(residual[1:] * residual[:-1])
+        for residual in ((fit.force(test)[test.settled] - test.force[test.settled]) / test.scale for test in tests)
+    ]
     spreads = covariances(tests, fit.law, parameters)
     squares = squares_of(tests, fit.law, parameters)
-    fitted = [np.average(each[t.settled], weights=t.weights[t.settled]) for each, t in zip(squares, tests, strict=True)]
     return dataclasses.replace(
-        fit, parameters=parameters, spreads=spreads, errors=deviations(spreads, sums_of(fit.law)),
-        fitted=np.sqrt(fitted), whole=np.sqrt([np.mean(each) for each in squares]),
+        fit, parameters=parameters, spreads=spreads, systematic=float(np.sqrt(max(np.mean(common), 0.0))),
+        errors=deviations(spreads, sums_of(fit.law)), fitted=np.sqrt(fitted_squares(tests, fit.law, parameters)),
+        whole=np.sqrt([np.mean(each) for each in squares]),
     )  # fmt: skip
 
 
@@ -222,9 +225,7 @@ def covariances(
         masks: samples of each test that were fitted; the settled samples by default.
     """
     # Columns of equal size: the parameters differ by many orders of magnitude.
-    sizes = np.maximum(
-        np.abs(parameters), [{"gas_force": 1.0, "gas_stiffness": 10.0}.get(n, 0.0) for n in law.parameters]
-    )
+    sizes = np.maximum(np.abs(parameters), [0.01 * LINEAR.get(name, 0.0) for name in law.parameters])
     scores, curvature = [], np.zeros((parameters.size,) * 2)
     noise = np.zeros_like(curvature)
     for test, mask in zip(tests, [test.settled for test in tests] if masks is None else masks, strict=True):
@@ -250,3 +251,8 @@ def deviations(spreads: Vector, rows: Vector) -> Vector:
         rows: derivatives of the sums over the parameters; (n, p).
     """
     return np.asarray(np.sqrt(np.maximum(np.max(np.einsum("ij,kjl,il->ki", rows, spreads, rows), axis=0), 0.0)))
+
+
+def parameter_squares(law: DamperLaw, parameters: Vector, spreads: Vector, test: DamperTest) -> Vector:
+    """Return the variance of the fitted force from the covariances of the parameters, over the measured one; (n,)."""
+    return (deviations(spreads, force_and_slopes(law, parameters, test.motion)[1]) / test.scale) ** 2

@@ -5,6 +5,8 @@ from its displacement after the last slip. With a series stiffness K the deflect
 
     K s = F_c(v - s') + sum of clamp(t_i + k_i du, l_i) + k_g (x - s) + F_0,   s' = a_0 s + a_1 s_1 + a_2 s_2,
 
+(with a gap g in series K (s -+ g/2) beyond +-g/2 and 0 inside, and Coulomb friction is added)
+
 with the backward difference of second order for steps h, h_1 (r = h/h_1): a_0 = (1 + 2 r)/((1 + r) h),
 a_1 = -(1 + r)/h, a_2 = r^2/((1 + r) h). It is stable for any K. The right side falls with s, so the solution is unique.
 The derivatives of s over the parameters solve the linearised equations of all samples at once (a band matrix).
@@ -25,6 +27,7 @@ from vehicle.arrays import Mask, Vector
 from vehicle.core.library import core
 from vehicle.core.records import packed
 from vehicle.studies.dampers.damper_law import EXPONENT, SOFT_STEP, STEP, DamperLaw, DamperValues, values_of
+from vehicle.studies.dampers.damper_setting import Setting
 
 Counts = npt.NDArray[np.intp]
 
@@ -43,6 +46,7 @@ class Motion:
     # steps of the solution of a series stiffness from each sample to the next, on the cubic through displacements and
     # velocities; (n - 1,), or 1 for all
     parts: Counts | int = 1
+    setting: Setting | None = None  # condition that changes during the test
 
     @cached_property
     def refined(self) -> tuple[Motion, Counts]:
@@ -70,13 +74,43 @@ def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tupl
     Args:
         parameters: in the order of `law.parameters`, SI units; with widths and excess, see `plain_parameters`; (p,).
     """
+    if law.setting:
+        return _mixed(law, parameters, motion)
     values = values_of(law, parameters)
     if not law.series:
         return _rigid(law, values, motion)
     fine, rows = motion.refined
     deflection, inner, sticking = _march(values, fine)
     columns = _slopes(law, values, fine, deflection, inner, sticking)
-    return values.series * deflection[rows], columns[rows]
+    force, columns = values.series * _engaged(values, deflection[rows]), columns[rows]
+    if law.gap:
+        turned = np.clip(motion.velocity / SOFT_STEP, -1.0, 1.0)
+        force += values.outer_friction * turned
+        columns[:, list(law.parameters).index("outer_friction")] = turned
+    return force, columns
+
+
+def _engaged(values: DamperValues, deflection: Vector) -> Vector:
+    """Return the deflection beyond the gap of both directions [m]; (n,)."""
+    return np.asarray(deflection - np.clip(deflection, -0.5 * values.gap, 0.5 * values.gap))
+
+
+def _mixed(law: DamperLaw, parameters: Vector, motion: Motion) -> tuple[Vector, Vector]:
+    """Return force and derivatives of a soft and a firm law with a changing setting, see `damper_setting`."""
+    assert motion.setting is not None
+    names, numbers = list(law.parameters), dict(zip(law.parameters, parameters.tolist(), strict=True))
+    theta, *slopes = motion.setting.shares(numbers["lag"], numbers.get("delay", 0.0), numbers.get("saturation", 1.0))
+    columns = np.zeros((theta.size, len(names)))
+    forces = []
+    for share, half in zip((1.0 - theta, theta), law.halves, strict=True):
+        force, of_half = force_and_slopes(law.passive, parameters[half], motion)
+        forces.append(force)
+        columns[:, half] += share[:, None] * of_half
+    change = forces[1] - forces[0]
+    for name, slope in zip(("lag", "delay", "saturation"), slopes, strict=True):
+        if name in names:
+            columns[:, names.index(name)] = change * slope
+    return forces[0] + theta * change, columns
 
 
 def _curve(values: DamperValues, step_width: float) -> tuple[list[float], list[float], list[float]]:
@@ -125,7 +159,8 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, Mask]:
             "knots": knots, "slopes": slopes, "offsets": offsets,
             "stiffness": values.stiffness, "limit": values.limit, "forces": np.zeros(elements),
             "spring": values.series, "gas": values.gas_stiffness, "offset": values.offset, "drop": at_rest - sliding,
-            "critical": critical, "first": motion.first_force,
+            "critical": critical, "half": 0.5 * values.gap,
+            "first": motion.first_force - values.outer_friction * np.sign(motion.velocity[0]),
             "deflection": deflection, "inner": inner, "sticking": sticking,
         },
     )  # fmt: skip
@@ -218,7 +253,8 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
 
     Unknown in the order s, t_1 ... t_m of each sample; row of s: (K + k_g) ds - dt_1 ... - c dw = explicit derivatives
     of the right side - s dK, with dw = -(a_0 ds + a_1 ds_1 + a_2 ds_2); rows of t_i: dt_i + k_i ds - dt_i1 - k_i ds_1 =
-    du dk_i where it sticks, dt_i = +-dl_i where it slips; k_i is the limit l_i over the stroke.
+    du dk_i where it sticks, dt_i = +-dl_i where it slips; k_i is the limit l_i over the stroke. With a gap g, s in K s
+    is the deflection e beyond it: de = ds -+ dg/2, and zero in the gap.
     """
     n, m = s.size, len(values.stiffness)
     rates, near, far = motion.rates
@@ -230,7 +266,12 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
     right = np.zeros((n, size, len(names)))
     right[:, 0, 0] = -1.0
     right[:, 0, 1 : 1 + curve.shape[1]] = curve
-    right[:, 0, names.index("series_stiffness")] = -s
+    engaged = _engaged(values, s)
+    spring = np.where((engaged == 0.0) & law.gap, 0.0, values.series)
+    gap = 0.5 * spring * np.sign(s)
+    right[:, 0, names.index("series_stiffness")] = -engaged
+    if law.gap:
+        right[:, 0, names.index("gap")] = gap
     if law.gas_stiffness:
         right[:, 0, names.index("gas_stiffness")] = u
     lower, upper = 2 * size, m
@@ -241,7 +282,7 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
         at = row - column + lag * size
         band[upper + at, : n - lag, column] = np.broadcast_to(value, n)[lag:]
 
-    entry(0, 0, 0, values.series + values.gas_stiffness + slope * rates)
+    entry(0, 0, 0, spring + values.gas_stiffness + slope * rates)
     entry(0, 0, 1, slope * near)
     entry(0, 0, 2, slope * far)
     for i, (k, stuck) in enumerate(zip(values.stiffness, sticking, strict=True)):
@@ -258,9 +299,13 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
     band[upper, 0, 0] = values.series
     band[upper + np.arange(1, size), 0, 0] = 0.0
     right[0] = 0.0
-    right[0, 0, names.index("series_stiffness")] = -s[0]
+    right[0, 0, names.index("series_stiffness")] = -engaged[0]
+    if law.gap:
+        right[0, 0, names.index("gap")] = 0.5 * values.series * np.sign(s[0])
     solution = scipy.linalg.solve_banded((lower, upper), band.reshape(lower + upper + 1, -1),
                                          right.reshape(n * size, -1), check_finite=False)  # fmt: skip
-    columns = values.series * solution.reshape(n, size, -1)[:, 0]
-    columns[:, names.index("series_stiffness")] += s
+    columns = spring[:, None] * solution.reshape(n, size, -1)[:, 0]
+    columns[:, names.index("series_stiffness")] += engaged
+    if law.gap:
+        columns[:, names.index("gap")] -= gap
     return np.asarray(columns)

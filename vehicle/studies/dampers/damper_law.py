@@ -3,11 +3,16 @@
 In extension positive, with the displacement x, the deflection s of a series stiffness K and the velocity w = x' - s' of
 the damper itself,
 
-    F = K s = F_c(w) + friction + k_g (x - s) + F_0.
+    F = K s = F_c(w) + friction + k_g (x - s) + F_0,
+
+With a gap g in series and a Coulomb friction F_o parallel to all,
+
+    F = K e(s) + F_o sgn x',   e = s - g/2 for s > g/2, s + g/2 for s < -g/2, otherwise zero.
 
 F_c has straight segments: slope c_j up to the velocity v_j, alike or separate on both sides. The friction is Coulomb
 friction, a step of F_c within `STEP`; Stribeck friction; or presliding, Jenkins elements over x - s. F_0 is minus the
-gas force, k_g the stiffness of the gas. All are laws of the vehicle file (`vehicle.studies.dampers.damper_lines`).
+gas force, k_g the stiffness of the gas. All but the gap are laws of the vehicle file
+(`vehicle.studies.dampers.damper_text`).
 """
 
 from __future__ import annotations
@@ -36,8 +41,14 @@ STEP = 1e-6
 EXPONENT = 2.0
 """Exponent delta of Stribeck friction; tests hardly distinguish it from the velocity vs."""
 
-LINEAR = ("gas_force", "gas_stiffness")
-"""Parameters that may be zero or negative, fitted without logarithm."""
+LINEAR = {"gas_force": 100.0, "gas_stiffness": 1e3, "delay": 1e-3}
+"""Parameters that may be zero or negative, fitted without logarithm, and their usual sizes."""
+
+FIRM = "firm_"
+"""Prefix of the parameters of the firm law of a damper whose setting changes during the tests."""
+
+SETTING = ("lag", "saturation", "delay")
+"""Parameters of a setting that changes during the tests."""
 
 SIDES = ("rebound", "bump")
 """Sides of a curve: extension, then compression."""
@@ -52,7 +63,24 @@ class DamperLaw:
     friction: str = ""  # "", "coulomb", "stribeck" or "presliding"
     elements: int = 0  # Jenkins elements of presliding
     series: bool = False  # a stiffness in series with the damper
+    gap: bool = False  # a gap (backlash) in series with both, and Coulomb friction parallel to all
     gas_stiffness: bool = False  # a stiffness parallel to the damper
+    # condition that changes during the tests: "", "lag" (soft and firm law, lag) or "saturating", see `damper_setting`
+    setting: str = ""
+    delayed: bool = False  # the setting has a delay besides its lag
+
+    @property
+    def passive(self) -> DamperLaw:
+        """The law at a constant setting."""
+        return dataclasses.replace(self, setting="", delayed=False)
+
+    @property
+    def halves(self) -> tuple[list[int], list[int]]:
+        """Places of the parameters of the soft and of the firm law; they share gas force and gas stiffness."""
+        names = list(self.parameters)
+        soft = [names.index(name) for name in self.passive.parameters]
+        firm = [names.index(FIRM + name if FIRM + name in names else name) for name in self.passive.parameters]
+        return soft, firm
 
     @property
     def sides(self) -> tuple[str, ...]:
@@ -62,6 +90,12 @@ class DamperLaw:
     @property
     def parameters(self) -> dict[str, str]:
         """Names of the parameters and their units, in the order of all arrays."""
+        if self.setting:
+            soft = self.passive.parameters
+            firm = {FIRM + name: unit for name, unit in soft.items() if name not in LINEAR}
+            names = soft | firm | {"lag": "s"}
+            names |= {"saturation": "-"} if self.setting == "saturating" else {}
+            return names | ({"delay": "s"} if self.delayed else {})
         names = {"gas_force": "N"}
         for side in self.sides:
             names |= {f"{side}damping_{j + 1}": "N s/m" for j in range(self.bends + 1)}
@@ -73,7 +107,8 @@ class DamperLaw:
         for i in range(self.elements):
             names |= {f"slider_limit_{i + 1}": "N", f"slider_stroke_{i + 1}": "m"}
         names |= {"gas_stiffness": "N/m"} if self.gas_stiffness else {}
-        return names | ({"series_stiffness": "N/m"} if self.series else {})
+        names |= {"series_stiffness": "N/m"} if self.series else {}
+        return names | ({"gap": "m", "outer_friction": "N"} if self.gap else {})
 
     @property
     def title(self) -> str:
@@ -83,7 +118,10 @@ class DamperLaw:
         elements = f"presliding friction ({self.elements} element{'s'[: self.elements > 1]})"
         parts += [elements] if self.elements else [f"{self.friction.title()} friction"] if self.friction else []
         parts += ["gas stiffness"] if self.gas_stiffness else []
-        return " + ".join(parts + (["series stiffness"] if self.series else []))
+        parts += ["series stiffness"] if self.series else []
+        parts += ["gap"] if self.gap else []
+        parts += [f"{self.setting} setting".replace("lag", "lagging")] if self.setting else []
+        return " + ".join(parts + (["delay"] if self.delayed else []))
 
     def larger(self) -> Iterator[DamperLaw]:
         """Yield the laws with one more part.
@@ -97,6 +135,8 @@ class DamperLaw:
             yield change(self, own_sides=True)
         if not self.series:
             yield change(self, series=True)
+        elif not self.gap:
+            yield change(self, gap=True)
         if not self.gas_stiffness:
             yield change(self, gas_stiffness=True)
         if not self.friction:
@@ -106,8 +146,39 @@ class DamperLaw:
         if self.elements == 1 and not self.series:
             yield change(self, friction="coulomb", elements=0, series=True)
             yield change(self, friction="stribeck", elements=0, series=True)
+            yield change(self, friction="coulomb", elements=0, series=True, gap=True)
         if self.friction != "stribeck" and self.elements < MAX_ELEMENTS:
             yield change(self, friction="presliding", elements=self.elements + 1)
+        if self.setting == "lag":
+            yield change(self, setting="saturating")
+        if self.setting and not self.delayed:
+            yield change(self, delayed=True)
+
+    def smaller(self) -> Iterator[DamperLaw]:
+        """Yield the laws with one part less."""
+        change = dataclasses.replace
+        if self.bends:
+            yield change(self, bends=self.bends - 1)
+        if self.own_sides:
+            yield change(self, own_sides=False)
+        if self.gap:
+            yield change(self, gap=False)
+        elif self.series:
+            yield change(self, series=False)
+        if self.gas_stiffness:
+            yield change(self, gas_stiffness=False)
+        if self.friction == "stribeck":
+            yield change(self, friction="coulomb")
+        if self.friction == "coulomb" or self.elements == 1:
+            yield change(self, friction="", elements=0)
+        if self.elements == 1:
+            yield change(self, friction="coulomb", elements=0)
+        if self.elements > 1:
+            yield change(self, elements=self.elements - 1)
+        if self.setting == "saturating":
+            yield change(self, setting="lag")
+        if self.delayed:
+            yield change(self, delayed=False)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -122,6 +193,8 @@ class DamperValues:
     offset: float  # F_0 [N]
     gas_stiffness: float  # k_g [N/m]
     series: float  # K [N/m]; infinite without
+    gap: float = 0.0  # g [m]
+    outer_friction: float = 0.0  # F_o [N]
 
 
 def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
@@ -142,6 +215,8 @@ def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
         offset=-number["gas_force"],
         gas_stiffness=number.get("gas_stiffness", 0.0),
         series=number.get("series_stiffness", np.inf),
+        gap=number.get("gap", 0.0),
+        outer_friction=number.get("outer_friction", 0.0),
     )
 
 
@@ -157,6 +232,10 @@ def sums_of(law: DamperLaw) -> Vector:
     """
     names = list(law.parameters)
     sums = np.eye(len(names))
+    if law.setting:
+        for half in law.halves:
+            sums[np.ix_(half, half)] = sums_of(law.passive)
+        return sums
     for side in law.sides:
         at = [names.index(f"{side}velocity_{j + 1}") for j in range(law.bends)]
         sums[np.ix_(at, at)] = np.tril(np.ones((len(at), len(at))))

@@ -21,6 +21,7 @@ from vehicle.studies.dampers.damper_text import (
     next_test,
     notice_lines,
     range_rows,
+    setting_rows,
     vehicle_lines,
 )
 from vehicle.studies.dampers.fitted_damper import FittedDamper
@@ -41,7 +42,7 @@ def damper_page(fits: Sequence[FittedDamper], command: str, *, author: str = "",
         condition = fitted.condition_words
         parts.append((f"Law{f' at {condition}' if condition else ''}", f"law{number_of_fit}", _law(fitted)))
     parts.append(("How to repeat the fit", "repeat", fill("repeat_damper", command=command)))
-    tests = [test for fitted in fits for test in fitted.tests]
+    tests = dict.fromkeys(test for fitted in fits for test in fitted.tests)
     return document(f"Damper from {len(tests)} test{'s'[: len(tests) > 1]}", (head_line(author, project),), parts)
 
 
@@ -54,7 +55,7 @@ def loops_of(fitted: FittedDamper, points: int = 0) -> list[DamperLoop]:
         label = f"{test.name}: error {error:.3f}, left out {outside:.3f}"
         loops.append(
             DamperLoop(label, test.displacement[rows], test.velocity[rows], test.force[rows],
-                       fitted.fit.force(test)[rows])
+                       fitted.force(test)[rows])
         )  # fmt: skip
     return loops
 
@@ -81,6 +82,9 @@ def _law(fitted: FittedDamper) -> Markup:
         (name, unit, number(value, 5), number(error, 2))
         for (name, unit), value, error in zip(fit.law.parameters.items(), fit.values, fit.errors, strict=True)
     ]
+    parameters += [
+        (name, unit, number(value, 5), number(error, 2)) for name, unit, value, error in setting_rows(fitted)
+    ]
     tests = [
         (f"{test.name}: {test.caption}", *(number(error, 3) for error in errors))
         for test, *errors in zip(fitted.tests, fit.fitted, fit.left_out, fit.whole, strict=True)
@@ -88,13 +92,13 @@ def _law(fitted: FittedDamper) -> Markup:
     slow, fast = (number(1e3 * speed, 2) for speed in (fitted.speeds[0] / RATIO, RATIO * fitted.speeds[1]))
     heads = ["law", "parameters", "left out", "slower", "faster", f"at {slow} mm/s [N]", f"at {fast} mm/s [N]"]
     laws = [
-        (each.fit.law.title, len(each.fit.law.parameters), *(shown(value) for value in each[1:]))
+        (each.fit.tested_law.title, len(each.fit.tested_law.parameters), *(shown(value) for value in each[1:]))
         for each in candidates(fitted)
     ]
     ranges = [(text, shown(inside), shown(outside)) for text, outside, inside in range_rows(fitted)]
     expected = [(text, *map(shown, errors)) for text, errors in expected_rows(fitted)]
     band = partial(plot_band, band=band_of(fitted), tested=fitted.speeds)
-    sentence = f"{fit.law.title[:1].upper()}{fit.law.title[1:]}: {choice_sentence(fitted)}."
+    sentence = f"{fit.tested_law.title[:1].upper()}{fit.tested_law.title[1:]}: {choice_sentence(fitted)}."
     return fill(
         "law",
         sentence=sentence,

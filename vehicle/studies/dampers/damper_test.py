@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -20,6 +20,7 @@ from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice, choose, pick
 from vehicle.signals.records.finding import findings_of
 from vehicle.studies.dampers.damper_force import Motion
+from vehicle.studies.dampers.damper_setting import Setting
 from vehicle.studies.dampers.record_checks import require_damping, require_sensors, usable_velocity
 from vehicle.studies.dampers.waveform import Waveform, reversal_times, reversals, waveform_of
 
@@ -73,6 +74,8 @@ class DamperTest:
     waveform: Waveform  # of the displacement, with the samples that are fitted
     conditions: Mapping[str, float]  # name of a condition to its value
     notices: tuple[str, ...]  # messages on what was done to the record
+    traces: Mapping[str, Vector] = field(default_factory=dict)  # conditions from channels over time; (n,) each
+    setting: Setting | None = None  # condition that changes during the tests of its group
     coarse: bool = False  # True for means over samples, see `averaged`
 
     @cached_property
@@ -91,7 +94,7 @@ class DamperTest:
         for turn in (after - 1, after):
             longest = np.minimum(longest, np.maximum(first[turn], growth * np.abs(middle - times[turn])))
         parts = np.minimum(np.ceil(steps / longest - 1e-6).astype(int), maximum)
-        return Motion(self.time, x, v, float(self.force[0]), parts)
+        return Motion(self.time, x, v, float(self.force[0]), parts, self.setting)
 
     @property
     def settled(self) -> Mask:
@@ -139,7 +142,8 @@ class DamperTest:
 
         settled = np.logical_and.reduceat(self.settled[:last], first)
         return dataclasses.replace(
-            self, coarse=True, waveform=self.waveform._replace(settled=settled), time=mean(self.time),
+            self, coarse=True, setting=self.setting and self.setting.averaged(first, last),
+            waveform=self.waveform._replace(settled=settled), time=mean(self.time),
             displacement=mean(self.displacement), velocity=mean(self.velocity), force=mean(self.force),
         )  # fmt: skip
 
@@ -159,7 +163,7 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
         choice: channels of the roles "displacement", "force", "velocity" and "time", units and excerpt; a role without
             a channel is the channel with its name, or the only channel of its quantity.
         compression: displacement, velocity and force of the file are positive in compression.
-        conditions: name of a condition to a number, or to "channel:NAME", whose mean value is taken.
+        conditions: name of a condition to a number, or to "channel:NAME": its mean value, and its values over time.
         pattern: pattern of the file name with conditions in braces, for example "*Hz{current}A".
 
     Raises:
@@ -197,9 +201,10 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
     settled = waveform.settled
     if not settled.all():
         notices.append(f"fitted from {time[settled][0]:.3g} to {time[settled][-1]:.3g} s, without run-up and run-down")
+    values, traces = _conditions(path, measurement, complete, conditions or {}, pattern)
     return DamperTest(
         name=path.stem, time=time, displacement=x, velocity=velocity, force=force, waveform=waveform,
-        conditions=_conditions(path, measurement, conditions or {}, pattern), notices=tuple(notices),
+        conditions=values, traces=traces, notices=tuple(notices),
     )  # fmt: skip
 
 
@@ -297,13 +302,20 @@ def _velocity(x: Vector, measured: Vector | None, step: float, notices: list[str
     return np.asarray(derivative)
 
 
-def _conditions(path: Path, measurement: Measurement, typed: Mapping[str, str], pattern: str) -> dict[str, float]:
-    """Return the conditions of a test: typed, the mean of a channel, or from the name of the file."""
+def _conditions(path: Path, measurement: Measurement, choice: Choice, typed: Mapping[str, str],
+                pattern: str) -> tuple[dict[str, float], dict[str, Vector]]:  # fmt: skip
+    """Return the conditions of a test: typed, the mean of a channel, or from the name of the file; and the channels."""
     values: dict[str, float] = {}
+    traces: dict[str, Vector] = {}
+    plain = dataclasses.replace(choice, detrend=False, highpass=None)
     for name, text in typed.items():
         if text.startswith("channel:"):
-            chosen = choose(measurement, Choice(channels={name: text.removeprefix("channel:")}))
-            values[name] = rounded(float(np.mean(chosen.values[name])), 3)
+            channels = {role: choice.channels[role] for role in ("time", "displacement") if role in choice.channels}
+            chosen = choose(
+                measurement, dataclasses.replace(plain, channels=channels | {name: text.removeprefix("channel:")})
+            )
+            traces[name] = chosen.values[name]
+            values[name] = rounded(float(np.mean(traces[name])), 3)
         else:
             values[name] = _number(text, f"--condition {name}={text}")
     if pattern:
@@ -323,7 +335,7 @@ def _conditions(path: Path, measurement: Measurement, typed: Mapping[str, str], 
         values |= {
             n: _number(re.sub("[x,]", ".", text), pattern) for n, text in zip(names, match.groups(), strict=True)
         }
-    return values
+    return values, traces
 
 
 def _number(text: str, where: str) -> float:
@@ -332,11 +344,3 @@ def _number(text: str, where: str) -> float:
         return float(text)
     except ValueError:
         raise ConfigurationError(f"{where}: must be a number, or channel:NAME") from None
-
-
-def by_conditions(tests: Sequence[DamperTest]) -> dict[tuple[tuple[str, float], ...], list[DamperTest]]:
-    """Return the tests in groups with the same conditions, sorted by them."""
-    groups: dict[tuple[tuple[str, float], ...], list[DamperTest]] = {}
-    for test in tests:
-        groups.setdefault(tuple(test.conditions.items()), []).append(test)
-    return dict(sorted(groups.items(), key=lambda entry: [value for _, value in entry[0]]))

@@ -9,12 +9,14 @@ import numpy as np
 from vehicle.digits import number, rounded
 from vehicle.model.parameters.tested_range import range_lines
 from vehicle.signals.formats.csv_table import table_text
+from vehicle.studies.dampers.damper_band import stored_band
 from vehicle.studies.dampers.damper_choice import WORST
 from vehicle.studies.dampers.damper_fit import DamperFit
 from vehicle.studies.dampers.damper_force import steady_force
-from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
+from vehicle.studies.dampers.damper_law import EXPONENT, SETTING, SMOOTHING, values_of
 from vehicle.studies.dampers.damper_ranges import RATIO, Expected, expected_error
 from vehicle.studies.dampers.fitted_damper import FittedDamper
+from vehicle.studies.dampers.residual_diagnosis import missing_text
 
 SLIP = 0.006
 """Velocity above which a damper counts as slipping [m/s], as in the shipped cars; no test shows it."""
@@ -59,7 +61,7 @@ def candidates(fitted: FittedDamper) -> list[Candidate]:
     shown = [
         fit
         for number_of_law, fit in enumerate(fitted.compared)
-        if number_of_law < SHOWN_LAWS or fit.law == fitted.fit.law
+        if number_of_law < SHOWN_LAWS or fit.tested_law == fitted.fit.tested_law
     ]
     rows = []
     for fit in shown:
@@ -170,7 +172,14 @@ def vehicle_lines(fitted: FittedDamper) -> str:
                      f"# stiffness of the gas, {values.gas_stiffness:.4g} N/m, standard error "
                      f"{number(spread['gas_stiffness'], 2)} N/m; add the bump stops of the car, "
                      "which the errors of this fit do not contain")  # fmt: skip
-    lines += range_lines(fitted.tested)
+    # Without a fit (`finished`) there are no covariances and no band.
+    lines += range_lines(fitted.tested | (stored_band(fitted) if fit.spreads.size else {}))
+    if law.gap:
+        lines.append(
+            f"# gap {1e3 * values.gap:.4g} mm, standard error {number(1e3 * spread['gap'], 2)} mm, in series with "
+            f"these lines, and {values.outer_friction:.4g} N of friction beside it: the vehicle file has no such "
+            "element, and the errors of the tests do not hold for these lines"
+        )
     if law.series:
         lines += [
             f"# series stiffness {values.series:.4g} N/m, standard error {number(spread['series_stiffness'], 2)} N/m:",
@@ -239,7 +248,7 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
     errors = zip(fitted.tests, fit.fitted.tolist(), fit.left_out.tolist(), fit.whole.tolist(), strict=True)
     return {
         "conditions": dict(fitted.conditions),
-        "chosen": fit.law.title,
+        "chosen": fit.tested_law.title,
         "parameters": [
             {
                 "path": f"damper.{name}",
@@ -262,7 +271,11 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             for test, inside, outside, whole in errors
         ],
         "candidates": [
-            {"law": each.fit.law.title, "parameters": len(each.fit.law.parameters), "accepted": each.fit.accepted}
+            {
+                "law": each.fit.tested_law.title,
+                "parameters": len(each.fit.tested_law.parameters),
+                "accepted": each.fit.accepted,
+            }
             | {name: _or_none(getattr(each, name)) for name in ("left_out", "slower", "faster", "below", "above")}
             for each in candidates(fitted)
         ],
@@ -274,6 +287,11 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             for text, (usual, limit) in expected_rows(fitted)
         ],
         "next_test": next_test(fitted),
+        "missing": missing_text(fitted),
+        "setting": [
+            {"name": name, "value": value, "standard_error": _or_none(error), "unit": unit}
+            for name, unit, value, error in setting_rows(fitted)
+        ],
         "not_determined": fitted.left_open(),
         "notices": [f"{test.name}: {text}" for test in fitted.tests for text in test.notices],
     }
@@ -282,6 +300,15 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
 def _or_none(value: float) -> float | None:
     """Return a finite number, or None."""
     return value if math.isfinite(value) else None
+
+
+def setting_rows(fitted: FittedDamper) -> list[tuple[str, str, float, float]]:
+    """Return name, unit, value and standard error of lag, saturation and delay of a changing condition."""
+    fit = fitted.changing
+    if fit is None:
+        return []
+    rows = zip(fit.law.parameters.items(), fit.values.tolist(), fit.errors.tolist(), strict=True)
+    return [(*name, value, error) for name, value, error in rows if name[0] in SETTING]
 
 
 def tests_text(fits: Sequence[FittedDamper]) -> str:
@@ -294,11 +321,17 @@ def tests_text(fits: Sequence[FittedDamper]) -> str:
             sizes = [1e3 * np.ptp(test.displacement), 1e3 * np.max(np.abs(test.velocity)), test.scale]
             conditions = [str(test.conditions.get(name, "")) for name in names]
             rows.append([test.name, *conditions, *(f"{value:.4g}" for value in [*sizes, inside, outside, whole])])
-    return table_text(rows)
+    return table_text(list(map(list, dict.fromkeys(map(tuple, rows)))))
 
 
-def summary_lines(fitted: FittedDamper) -> list[str]:
-    """Return the printed summary: laws with their errors on tests left out, tests, parameters, what is left open."""
+def summary_lines(fitted: FittedDamper, again: bool = False) -> list[str]:
+    """Return the printed summary: laws with their errors on tests left out, tests, parameters, what is left open.
+
+    Args:
+        again: print the parameters only, after the other law for the same tests.
+    """
+    if again:
+        return [caption_of(fitted), *parameter_lines(fitted)]
     fit = fitted.fit
     lines = [caption_of(fitted), *(f"notice: {text}" for text in notice_lines(fitted))]
     slow, fast = (number(1e3 * speed, 2) for speed in (fitted.speeds[0] / RATIO, RATIO * fitted.speeds[1]))
@@ -309,9 +342,9 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
     for each in candidates(fitted):
         errors = "".join(f"{_or_dash(value, 3):>8}" for value in (each.slower, each.faster))
         forces = "".join(f"{number(force, 3) + ' N':>14}" for force in (each.below, each.above))
-        law = each.fit.law
+        law = each.fit.tested_law
         lines.append(f"{each.left_out:>9.4f}{errors}{forces}{len(law.parameters):>11}  {law.title}")
-    lines.append(f"chosen: {fit.law.title}, {choice_sentence(fitted)}")
+    lines.append(f"chosen: {fit.tested_law.title}, {choice_sentence(fitted)}")
     lines.append(f"{'RMS error divided by standard deviation of force':<44}{'fitted':>8}{'left out':>10}{'whole':>8}")
     for test, inside, outside, whole in zip(fitted.tests, fit.fitted, fit.left_out, fit.whole, strict=True):
         lines.append(f"{f'{test.name}: {test.caption}':<44}{inside:>8.3f}{outside:>10.3f}{whole:>8.3f}")
@@ -322,12 +355,22 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
     lines += [f"{text:<52}{usual:>8.3f}{_or_dash(limit, 3):>20}" for text, (usual, limit) in expected_rows(fitted)]
     if further := next_test(fitted):
         lines.append(f"next: {further}")
+    if missing := missing_text(fitted):
+        lines.append(f"missing: {missing}")
     if float(np.max(fit.fitted)) > POOR:
         lines.append(
             f"poor fit: an error is above {POOR:g}; check signs and time shifts of the channels, and look at the "
             "pictures"
         )
+    return lines + parameter_lines(fitted)
+
+
+def parameter_lines(fitted: FittedDamper) -> list[str]:
+    """Return the printed parameters with their standard errors, and what is left open."""
+    fit, lines = fitted.fit, []
     lines.append(f"{'parameter':<22}{'value':>12}   standard error")
     for (name, unit), value, error in zip(fit.law.parameters.items(), fit.values, fit.errors, strict=True):
         lines.append(f"{name:<22}{value:>12.5g}   {number(error, 2)} {unit}")
+    for name, unit, value, error in setting_rows(fitted):
+        lines.append(f"{f'{name} of the setting':<22}{value:>12.5g}   {number(error, 2)} {unit}")
     return lines + [f"not determined: {sentence}" for sentence in fitted.left_open()]

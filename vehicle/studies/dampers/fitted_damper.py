@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
@@ -10,13 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.arrays import Vector
+from vehicle.digits import rounded
 from vehicle.errors import ConfigurationError
 from vehicle.signals.records.choice import Choice
+from vehicle.studies.dampers.conditions import by_conditions, with_setting
 from vehicle.studies.dampers.damper_choice import choose_law
 from vehicle.studies.dampers.damper_fit import DamperFit, kind_of, limits_of
 from vehicle.studies.dampers.damper_law import LINEAR, values_of
 from vehicle.studies.dampers.damper_ranges import speeds_of
-from vehicle.studies.dampers.damper_test import DamperTest, by_conditions, read_test
+from vehicle.studies.dampers.damper_test import DamperTest, read_test
 from vehicle.studies.dampers.direction import require_direction
 
 SLOW = 0.01
@@ -41,12 +44,33 @@ class FittedDamper:
         tests: the tests.
         fit: the chosen law.
         compared: all laws that were compared, by their errors on tests left out.
+        changing: soft and firm law together, with lag and delay, of a condition that changes during the tests; `fit`
+            is then the law at the condition of `conditions`.
     """
 
     conditions: Mapping[str, float]
     tests: Sequence[DamperTest]
     fit: DamperFit
     compared: Sequence[DamperFit]
+    changing: DamperFit | None = None
+
+    def settings(self) -> list[FittedDamper]:
+        """Return the fit, or soft and firm law of a condition that changes during the tests."""
+        setting = self.tests[0].setting
+        if setting is None:
+            return [self]
+        return [
+            dataclasses.replace(
+                self, conditions={**self.conditions, setting.name: rounded(value, 3)}, changing=self.fit,
+                fit=self.fit.at_setting(firm), compared=[fit.at_setting(firm) for fit in self.compared],
+            )
+            for firm, value in ((False, setting.lowest), (True, setting.highest))
+        ]  # fmt: skip
+
+    def force(self, test: DamperTest) -> Vector:
+        """Return the force under the motion of a test and its changing condition, if it has one [N]; (n,)."""
+        fit = self.fit if self.changing is None else self.changing
+        return fit.force(test)
 
     @property
     def name(self) -> str:
@@ -143,6 +167,7 @@ def fit_damper(
 
     Returns:
         Fits sorted by their conditions; `fits[0].fit.values` are the parameters in the order of `fit.law.parameters`.
+        A condition that changes during the tests gives two fits, at its lowest and at its highest value.
 
     Raises:
         ConfigurationError: no file, a file twice or missing, or wrong conditions.
@@ -158,6 +183,7 @@ def fit_damper(
         tests.append(read_test(path, choice, compression=bool(compression), conditions=of_file, pattern=pattern))
         tell(READING * len(tests) / len(paths))
     require_direction(tests, compression)
+    tests = with_setting(tests)
     fitted: list[FittedDamper] = []
     groups = by_conditions(tests).values()
     for group in groups:
@@ -169,7 +195,7 @@ def fit_damper(
         fit, compared = choose_law(group, of_laws)
         fitted.append(FittedDamper(conditions=group[0].conditions, tests=group, fit=fit, compared=compared))
     tell(1.0)
-    return fitted
+    return [each for whole in fitted for each in whole.settings()]
 
 
 def _typed(conditions: Mapping[str, str], files: int) -> list[dict[str, str]]:

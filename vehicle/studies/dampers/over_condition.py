@@ -54,6 +54,26 @@ def curve_lines(fits: Sequence[FittedDamper]) -> list[tuple[str, Vector, Vector]
     return lines
 
 
+def setting_values(fitted: FittedDamper) -> dict[str, float]:
+    """Return lag [s], delay [s] and saturation [-] of a condition that changes during the tests; empty without."""
+    fit = fitted.changing
+    numbers = dict(zip(fit.law.parameters, fit.parameters.tolist(), strict=True)) if fit is not None else {}
+    return {name: numbers[name] for name in ("lag", "delay", "saturation") if name in numbers}
+
+
+def switching_of(fits: Sequence[FittedDamper]) -> tuple[float, float]:
+    """Return delay [s] and rate [N s/m per s] of a semi-active damper, from a condition that changes during its tests.
+
+    A lag of first order is behind a step by its time constant in the mean, a constant rate by half of its duration: the
+    rate is the range of the damping over twice the lag. Zeros without a changing condition.
+    """
+    values = setting_values(fits[0])
+    if not values:
+        return 0.0, 0.0
+    dampings = [each.damping for each in settings_of(fits)]
+    return values.get("delay", 0.0), (max(dampings) - min(dampings)) / (2.0 * values["lag"])
+
+
 def control_lines(fits: Sequence[FittedDamper]) -> str:
     """Return lines for the table of a semi-active damper: its softest and firmest setting over the conditions."""
     settings = settings_of(fits)
@@ -69,6 +89,7 @@ def control_lines(fits: Sequence[FittedDamper]) -> str:
     tested = {
         name: (min(each[name][0] for each in ranges), max(each[name][1] for each in ranges)) for name in ranges[0]
     }
+    delay, rate = switching_of(fits)
     lines += [
         "# values for the section [AXLE.damper.control]: the coefficient replaces the curve; friction, gas and stop",
         f"# stay in the section of the damper, e.g. as in damper{fits[0].name}.toml, with the range of all tests:",
@@ -76,4 +97,11 @@ def control_lines(fits: Sequence[FittedDamper]) -> str:
         f"minimum_damping = {rounded(min(dampings), 5)!r}  # [N s/m]",
         f"maximum_damping = {rounded(max(dampings), 5)!r}  # [N s/m]",
     ]
+    if rate:
+        lag = setting_values(fits[0])["lag"]
+        lines += [
+            f"delay = {rounded(delay, 3)!r}  # [s]",
+            f"rate = {rounded(rate, 3)!r}  # [N s/m per s] from softest to firmest in twice the lag,",
+            f"# {2e3 * lag:.3g} ms: a constant rate that is as late in the mean",
+        ]
     return "\n".join(lines) + "\n"

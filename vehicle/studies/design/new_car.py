@@ -14,6 +14,7 @@ from vehicle.model.parameters.template import own_templates
 from vehicle.model.parameters.value_sources import value_sources
 from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
+from vehicle.studies.design.axle_types import with_axles
 from vehicle.studies.design.car_class import POWERTRAIN, of_class, powertrain
 from vehicle.studies.design.car_file import vehicle_text
 from vehicle.studies.design.mass_balance import axle_loads, balanced, kerb_mass, kerb_model
@@ -21,8 +22,11 @@ from vehicle.studies.design.moved_points import Sources, moved_points
 from vehicle.studies.design.ride_solution import Target, new_car_of, quantities, solved, targets_of
 from vehicle.studies.design.scaled_parts import scaled_parts
 from vehicle.studies.design.stated_numbers import AXLES, NAMES, StatedNumbers, option
+from vehicle.studies.design.table_points import put_parameters, put_points, put_tyre
 from vehicle.studies.design.template_car import TemplateCar, template_car
 from vehicle.studies.design.tyre_size import with_tyre_size
+from vehicle.studies.design.unsprung_parts import put_unsprung
+from vehicle.studies.tables.car_table import CarTable
 from vehicle.threads import one_blas_thread
 
 LOADS_MET, FREQUENCIES_MET = 1e-3, 1e-2
@@ -73,13 +77,14 @@ class NewCar:
 
 
 @one_blas_thread()
-def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
+def new_car(name: str, source: Path | str, stated: StatedNumbers, points: CarTable | None = None) -> NewCar:
     """Make a new car.
 
     Args:
         name: name of the new car.
         source: template: name of a shipped car, or a vehicle file.
         stated: numbers of the new car; all others are those of its class or of the template, or estimated.
+        points: table of the car with points, curves and numbers of parts.
 
     Returns:
         The car, whose numbers are met within `LOADS_MET` and `FREQUENCIES_MET`.
@@ -95,18 +100,28 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
     stated = with_tyre_size(stated, template, ratio)
     engine = powertrain(stated.car_class)
     template = template.with_powertrain(engine)
+    source_car = template
+    if points is not None:
+        template = with_axles(template, points.axles)
     table, sources = moved_points(template, stated)
+    if points is not None:
+        sources |= put_points(table, template, points)
     before = value_sources(template.file)
     table, scaled = scaled_parts(table, template, ratio, powertrain=engine is None)
     of_parts = {path: f"{text}: {before[path]}" if path in before else text for path, text in scaled.items()}
+    if points is not None:
+        of_parts |= put_parameters(table, template, points)
+    of_parts |= put_unsprung(table, template, stated)
     table, of_body = balanced(table, template, stated)
-    sources |= of_parts | of_body | _curves(table, template, stated)
+    if points is not None:
+        of_parts |= put_tyre(table, template, points)
+    sources |= of_parts | of_body | _curves(table, template, stated, points)
     if engine is not None:
         sources["engine"] = f"class {stated.car_class}: {POWERTRAIN}"
     if stated.load:
         table["load"] = dict(stated.load)
         sources |= {f"load.{load}": "given" for load in stated.load}
-    targets = targets_of(template, stated)
+    targets = targets_of(template, stated, () if points is None else tuple(points.curves), source_car)
     # The step of the template is short enough for the template; without it each car gets its own.
     solver = {key: value for key, value in table.get("solver", {}).items() if key != "timestep"}
     table = solved({**table, "name": name, "solver": solver}, template, targets)
@@ -122,7 +137,11 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
     )
     text = vehicle_text(car.vehicle, header, sources, template.name, before)
     return NewCar(
-        car=car, text=text, checks=checks, parts=_parts(template, stated, ratio), notes=_notes(car, template, stated)
+        car=car,
+        text=text,
+        checks=checks,
+        parts=_parts(template, stated, ratio),
+        notes=_notes(car, template, stated, points),
     )
 
 
@@ -133,17 +152,24 @@ def template_files(source: Path, car: Car) -> list[Path]:
     return own_templates(names, folders)
 
 
-def _curves(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers) -> Sources:
+def _curves(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers, points: CarTable | None) -> Sources:
     """Put the stated damper curves into a vehicle table; return their sources."""
     sources = Sources()
     for word in AXLES:
-        if (file := stated.of_axle("damper_curve", word)) is None:
+        rows = None if points is None else points.curves.get(word)
+        if (file := stated.of_axle("damper_curve", word)) is not None:
+            law: dict[str, Any] = {"curve": str(Path(file).absolute())}
+            name = Path(file).name
+        elif rows is not None and points is not None:
+            law = {"velocity": [velocity for velocity, _ in rows], "force": [force for _, force in rows]}
+            name = points.file
+        else:
             continue
         for path in template.element_paths(word)["damper"]:
             numbers = {k: v for k, v in value_at(table, path).items() if k not in ("viscous", "velocity", "force")}
-            numbers |= {"viscous_law": "table", "curve": str(Path(file).absolute())}
+            numbers |= {"viscous_law": "table", **law}
             put(table, {path: numbers})  # type: ignore[dict-item]
-            sources |= {f"{path}.{key}": f"given: {Path(file).name}" for key in ("viscous_law", "velocity", "force")}
+            sources |= {f"{path}.{key}": f"given: {name}" for key in ("viscous_law", "velocity", "force")}
     return sources
 
 
@@ -192,7 +218,7 @@ def _checks_of(car: Car, template: TemplateCar, stated: StatedNumbers, ratio: fl
             origin=_origin(name, template, stated, ratio),
         )
         for name in NAMES
-        if name in values
+        if name in values and (name not in ONLY_STATED or getattr(stated, name) is not None)
     )
 
 
@@ -242,7 +268,7 @@ FOLLOWS: dict[str, tuple[str, ...]] = {
 """Stated numbers that a figure of the car follows from, without the word of an axle; all others are the template's."""
 
 
-def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> Iterator[str]:
+def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers, points: CarTable | None) -> Iterator[str]:
     """Yield a note with the origin of each figure outside the usual range; the loads of the car are left out."""
     kerb = new_car_of({key: value for key, value in car.vehicle.table.items() if key != "load"}, template)
     axle_words = {template.axle(word): word for word in AXLES}
@@ -256,15 +282,17 @@ def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> It
         origins = [f"follows from {stated.stated(name)}" if isinstance(getattr(stated, name), float) else
                    f"follows from {option(name)}" for name in names if getattr(stated, name) is not None]  # fmt: skip
         otherwise = f"from the template {template.name}"
+        if points is not None and not names and len(points.points.get(axle_words.get(figure.axle, ""), {})) > 1:
+            otherwise = f"from the points of {points.file}, others of the template {template.name}"
         if names:
             otherwise += f"; state {' or '.join(map(option, names))}"
         yield f"unusual: {figure}; {', '.join(origins) or otherwise}"
 
 
-def _notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[str, ...]:
+def _notes(car: Car, template: TemplateCar, stated: StatedNumbers, points: CarTable | None) -> tuple[str, ...]:
     """Return the notes: figures outside their usual ranges, and what is left out or kept."""
     return (
-        *_unusual_notes(car, template, stated),
+        *_unusual_notes(car, template, stated, points),
         *_tyre_notes(template, stated),
         *(f"left out from {template.name}: {text}" for text in template.left_out),
     )
@@ -277,6 +305,14 @@ def _parts(template: TemplateCar, stated: StatedNumbers, ratio: float) -> tuple[
     scaled = "" if ratio == 1.0 else f", scaled with the kerb mass ({ratio:.3f})"
     return (parts, f"{template.name}{scaled}"), ("points of the body", f"{template.name}, same share of the wheelbase")
 
+
+ONLY_STATED = tuple(
+    f"{name}_{axle}"
+    for name in ("unsprung_mass", "wheel_rate", "spring_stiffness", "tyre_stiffness", "wheel_damping",
+                 "damper_constant")
+    for axle in AXLES
+)  # fmt: skip
+"""Numbers that appear only if they are stated: each is another form of one of `RIDE_ORDER`."""
 
 RIDE_ORDER = (
     *("wheel_hop_front", "wheel_hop_rear", "ride_frequency_front", "ride_frequency_rear", "kerb_mass", "cog_x"),
@@ -293,8 +329,15 @@ OTHER_NAMES = {
     "kerb_mass": ("front_axle_load", "rear_axle_load"),
     "cog_x": ("front_axle_load", "rear_axle_load"),
     "pitch_inertia": ("pitch_frequency",),
-    "damping_ratio_front": ("damper_curve_front",),
-    "damping_ratio_rear": ("damper_curve_rear",),
+    **{
+        f"{name}_{axle}": tuple(f"{other}_{axle}" for other in others)
+        for axle in AXLES
+        for name, others in {
+            "ride_frequency": ("wheel_rate", "spring_stiffness"),
+            "damping_ratio": ("damper_curve", "wheel_damping", "damper_constant"),
+            "wheel_hop": ("tyre_stiffness",),
+        }.items()
+    },
 }
 """Numbers that state another number too; the kerb mass needs both axle loads."""
 

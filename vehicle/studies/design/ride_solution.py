@@ -8,7 +8,7 @@ differences once and then updated by Broyden's formula.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,7 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.digits import rounded
-from vehicle.engines.kinematics.axle_ride import axle_rides
+from vehicle.engines.kinematics.axle_ride import axle_rides, damper_constant
 from vehicle.engines.kinematics.ride_figures import ride_figures
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.paths import value_at
@@ -42,7 +42,7 @@ TYRE_SAG = (0.006, 0.05)
 """Least and largest static deflection of a tyre [m]: a solid tyre, and a flat tyre."""
 BISECTIONS = 12
 """Steps of the search for the last possible car: the factor is then within 0.2 % for a bound of 1000."""
-LIMITS = {"wheel_hop": " (static deflection of 50 to 6 mm)"}
+LIMITS = dict.fromkeys(("wheel_hop", "tyre_stiffness"), " (static deflection of 50 to 6 mm)")
 """Reason of the limits of a parameter, by the name of the quantity."""
 WIDENS = {
     "ride_frequency": "Softer or stiffer tyres (--wheel-hop-front, -rear) and another axle load move the interval.",
@@ -50,6 +50,9 @@ WIDENS = {
     "wheel_hop": "Lighter wheels and brakes raise it, heavier wheels lower it: change parts.*.mass of this axle in the "
     "template file, or state another kerb mass, which scales them.",
     "roll_stiffness": "The springs alone give the lowest value: a lower ride frequency or a narrower track reduces it.",
+    "wheel_rate": "Bushings of the axle add to the springs: state the stiffness of the spring instead.",
+    "wheel_damping": "It holds at a damper velocity of 0.1 m/s: state a value inside the range, or a --damper-curve.",
+    "tyre_stiffness": "The static load of the axle limits it: state other axle loads.",
     "pitch_frequency": "The moments of a real body limit it: state other ride frequencies, axle loads, roll or yaw "
     "inertia.",
 }
@@ -59,8 +62,11 @@ SPRING_FORCES = ("stiffness", "table.force")
 """Parameters of a spring that are proportional to its force."""
 DAMPER_FORCES = ("viscous", "degressive_viscous", "force")
 """Parameters of a damper that are proportional to its viscous force."""
-KEPT = ("ride_frequency", "damping_ratio")
-"""Quantities of the template that the new car keeps if no others are stated: springs and dampers fit the car."""
+KEPT = {
+    "ride_frequency": ("wheel_rate", "spring_stiffness"),
+    "damping_ratio": ("damper_curve", "wheel_damping", "damper_constant"),
+}
+"""Quantities of the template that the new car keeps, unless one of these sets the part: springs and dampers fit it."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -86,6 +92,18 @@ def quantities(car: Car, template: TemplateCar, *, roll: bool = True) -> dict[st
         values[f"ride_frequency_{word}"] = ride.ride_frequency
         values[f"damping_ratio_{word}"] = ride.damping_ratio
         values[f"roll_stiffness_{word}"] = ride.roll.stiffness * math.pi / 180.0
+        values |= {
+            f"unsprung_mass_{word}": 2.0 * ride.unsprung_mass,
+            f"wheel_rate_{word}": ride.wheel.stiffness,
+            f"wheel_damping_{word}": ride.wheel.damping,
+            f"tyre_stiffness_{word}": ride.tyre.stiffness,
+        }
+        elements, table = template.element_paths(word), car.vehicle.table
+        if elements["spring"]:
+            values[f"spring_stiffness_{word}"] = value_at(table, f"{elements['spring'][0]}.stiffness")
+        laws = [damper.law for damper in car.vehicle.composition.dampers if damper.path in elements["damper"]]
+        if laws:
+            values[f"damper_constant_{word}"] = damper_constant(laws[0])
         values[f"wheel_hop_{word}"] = figures[f"{template.axle(word)} wheel hop"].frequency_hz
     return values
 
@@ -95,15 +113,28 @@ def new_car_of(table: Mapping[str, Any], template: TemplateCar) -> Car:
     return Car(vehicle_of(table, template.file.parent), folder=template.file.parent)
 
 
-def targets_of(template: TemplateCar, stated: StatedNumbers) -> list[Target]:
-    """Return the targets: the stated quantities, by default ride frequencies and damping ratios of the template."""
-    template_values = quantities(new_car_of(template.table, template), template)
+def targets_of(
+    template: TemplateCar, stated: StatedNumbers, curves: Collection[str] = (), source: TemplateCar | None = None
+) -> list[Target]:
+    """Return the targets: the stated quantities, by default ride frequencies and damping ratios of the template.
+
+    Args:
+        template, stated: template and stated numbers.
+        curves: axles whose dampers have a curve of a table.
+        source: template before its axles were replaced, which gives the kept values; default: `template`.
+    """
+    source = source or template
+    template_values = quantities(new_car_of(source.table, source), source)
     targets = []
     for word in AXLES:
         for name, paths in _parameters(template, word).items():
             value = getattr(stated, name)
-            curve = name.startswith("damping") and stated.of_axle("damper_curve", word) is not None
-            if curve or (value is None and not name.startswith(KEPT)):
+            kept = next((others for first, others in KEPT.items() if name.startswith(first)), None)
+            if value is None and (
+                kept is None
+                or (name.startswith("damping") and word in curves)
+                or any(stated.of_axle(other, word) is not None for other in kept)
+            ):
                 continue
             present = tuple(path for path in paths if value_at(template.table, path) not in (None, 0.0))
             if value is not None and not present:
@@ -130,10 +161,13 @@ def _parameters(template: TemplateCar, word: str) -> dict[str, list[str]]:
                 f"{damper.path}.control: a controlled damper has no fixed damping ratio; start from a car with passive "
                 "dampers, and add the control to the new vehicle file"
             )
+    springs = [f"{path}.{key}" for path in elements["spring"] for key in SPRING_FORCES]
+    dampers = [f"{path}.{key}" for path in elements["damper"] for key in DAMPER_FORCES]
+    tyres = [f"{template.tyre_paths[word]}.stiffness.z"]
     return {
-        f"ride_frequency_{word}": [f"{path}.{key}" for path in elements["spring"] for key in SPRING_FORCES],
-        f"damping_ratio_{word}": [f"{path}.{key}" for path in elements["damper"] for key in DAMPER_FORCES],
-        f"wheel_hop_{word}": [f"{template.tyre_paths[word]}.stiffness.z"],
+        **{f"{name}_{word}": springs for name in ("ride_frequency", "wheel_rate", "spring_stiffness")},
+        **{f"{name}_{word}": dampers for name in ("damping_ratio", "wheel_damping", "damper_constant")},
+        **{f"{name}_{word}": tyres for name in ("wheel_hop", "tyre_stiffness")},
         f"roll_stiffness_{word}": [f"{path}.torsional_stiffness" for path in elements["bar"]],
     }
 
@@ -179,7 +213,7 @@ class RideProblem:
         """Return the lower and the upper bound of the factor on the parameter of each target."""
         lower, upper = np.full((2, len(self.targets)), [[LEAST], [1.0 / LEAST]])
         for index, target in enumerate(self.targets):
-            if target.name.startswith("wheel_hop"):
+            if target.name.startswith(("wheel_hop", "tyre_stiffness")):
                 load = _mean_load(self.table, self.template, target.name.rpartition("_")[2])
                 stiffness = value_at(self.table, target.paths[0].removesuffix(".z"))[2]
                 lower[index], upper[index] = (load / (sag * stiffness) for sag in reversed(TYRE_SAG))
@@ -286,7 +320,9 @@ class RideProblem:
         return ConfigurationError(
             f"{option(target.name)} {target.value:g} {'' if of == '-' else of}: cannot be reached; must be "
             f"{low:.4g} to {high:.4g} {'' if of == '-' else of}, with {path} from {first} to {last} "
-            f"{unit}{LIMITS.get(name, '')}. {WIDENS[name]}".replace(" :", ":").replace(" ,", ",")
+            f"{unit}{LIMITS.get(name, '')}. {WIDENS.get(name, '')}".rstrip()
+            .replace(" :", ":")
+            .replace(" ,", ",")
         )
 
     def explained_error(self, error: ConfigurationError) -> ConfigurationError:

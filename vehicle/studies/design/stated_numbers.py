@@ -1,6 +1,7 @@
 """Stated numbers of a new car; all are optional, and the template car supplies the others."""
 
 import dataclasses
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -26,6 +27,10 @@ AXLE: dict[str, Any] = {"at_least": 20.0, "why": "kg, neither a share nor t"}
 METRES: dict[str, Any] = {"why": "m, not mm"}
 HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
 RATIO: dict[str, Any] = {"why": "a ratio: 30 % of critical damping is 0.3"}
+UNSPRUNG: dict[str, Any] = {"at_least": 20.0, "at_most": 2000.0, "why": "of the axle, not of a wheel"}
+RATE: dict[str, Any] = {"at_least": 3e3, "at_most": 1e6, "why": "N/m, not N/mm; springs of cars have 1.5e4 to 2e5"}
+TYRE: dict[str, Any] = {"at_least": 5e4, "at_most": 2e6, "why": "N/m, not N/mm; tyres of cars have 1.5e5 to 4e5"}
+DAMPING: dict[str, Any] = {"at_least": 50.0, "at_most": 1e5, "why": "N s/m; dampers of cars have 1e3 to 5e3"}
 
 optional = partial(quantity, default=None)
 """Declaration of a number that need not be stated."""
@@ -36,7 +41,7 @@ class StatedNumbers:
     """Numbers of a car; None: not stated. `option` returns its name on a command line.
 
     `tyre_size`, e.g. 205/55R16, replaces the radius. `of_class` has the names of the numbers taken from the class
-    of the car.
+    of the car, `of_load` of those that follow from the load of the wheels.
     """
 
     kerb_mass: float | None = optional("kg", "mass of the car without driver and loads ([load])", at_most=2e4, **CAR)
@@ -61,6 +66,9 @@ class StatedNumbers:
     track_rear: float | None = optional("m", "track of the rear wheels", above=0.0, at_most=4.0, **METRES)
     tyre_radius: float | None = optional(
         "m", "loaded radius: wheel centre above the ground", above=0.0, at_most=2.0, **METRES
+    )
+    tyre_free_radius: float | None = optional(
+        "m", "radius without load, instead of the loaded radius", above=0.0, at_most=2.0, **METRES
     )
     roll_inertia: float | None = optional(
         "kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0
@@ -103,21 +111,43 @@ class StatedNumbers:
         "roll stiffness of the rear axle without the tyres; sets the stabilizer, or the torsion of the beam",
         above=0.0,
     )
+    unsprung_mass_front: float | None = optional("kg", "unsprung mass of the front axle, both wheels", **UNSPRUNG)
+    unsprung_mass_rear: float | None = optional("kg", "unsprung mass of the rear axle, both wheels", **UNSPRUNG)
+    wheel_rate_front: float | None = optional("N/m", "spring rate of a front wheel, at the wheel", **RATE)
+    wheel_rate_rear: float | None = optional("N/m", "spring rate of a rear wheel, at the wheel", **RATE)
+    spring_stiffness_front: float | None = optional("N/m", "stiffness of a front spring, at the spring", **RATE)
+    spring_stiffness_rear: float | None = optional("N/m", "stiffness of a rear spring, at the spring", **RATE)
+    tyre_stiffness_front: float | None = optional("N/m", "vertical stiffness of a front tyre", **TYRE)
+    tyre_stiffness_rear: float | None = optional("N/m", "vertical stiffness of a rear tyre", **TYRE)
+    wheel_damping_front: float | None = optional("N s/m", "damping of a front wheel, at the wheel", **DAMPING)
+    wheel_damping_rear: float | None = optional("N s/m", "damping of a rear wheel, at the wheel", **DAMPING)
+    damper_constant_front: float | None = optional("N s/m", "constant of a front damper at 0.1 m/s", **DAMPING)
+    damper_constant_rear: float | None = optional("N s/m", "constant of a rear damper at 0.1 m/s", **DAMPING)
     car_class: str | None = optional("-", "class of the car, which sets default values")
     tyre_size: str | None = None
     of_class: tuple[str, ...] = ()
+    of_load: tuple[str, ...] = ()
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
 
     def __post_init__(self) -> None:
         validate(self)
+        same = [
+            pair
+            for names in SAME_PARAMETER
+            for axle in AXLES
+            for pair in itertools.combinations([f"{name}_{axle}" for name in names], 2)
+        ]
         for first, second, why in (
+            *((*pair, "both set the same part") for pair in same),
             ("pitch_frequency", "pitch_inertia", "each follows from the other"),
             ("damping_ratio_front", "damper_curve_front", "the curve sets the damping"),
             ("damping_ratio_rear", "damper_curve_rear", "the curve sets the damping"),
+            ("tyre_radius", "tyre_free_radius", "each follows from the other under the load"),
             ("cog_x", "front_axle_load", "both give the position of the centre of gravity"),
             ("cog_x", "rear_axle_load", "both give the position of the centre of gravity"),
         ):
-            if getattr(self, first) is not None and getattr(self, second) is not None:
+            solved = {first, second} == {"tyre_radius", "tyre_free_radius"} and "tyre_radius" in self.of_load
+            if getattr(self, first) is not None and getattr(self, second) is not None and not solved:
                 raise ConfigurationError(f"{option(first)} and {option(second)}: {why}; leave one of the two out")
         mass, front, rear = self.kerb_mass, self.front_axle_load, self.rear_axle_load
         if (
@@ -147,13 +177,24 @@ class StatedNumbers:
         """Return where a number comes from: "given", "class small" or "tyre 205/55R16"."""
         if name == "tyre_radius" and self.tyre_size is not None:
             return f"tyre {self.tyre_size}"
+        if name == "tyre_radius" and self.tyre_free_radius is not None:
+            return f"free radius {self.tyre_free_radius:g} m"
         return f"class {self.car_class}" if name in self.of_class else "given"
 
+
+SAME_PARAMETER = (
+    ("ride_frequency", "wheel_rate", "spring_stiffness"),
+    ("damping_ratio", "wheel_damping", "damper_constant"),
+    ("damper_curve", "wheel_damping"),
+    ("damper_curve", "damper_constant"),
+    ("wheel_hop", "tyre_stiffness"),
+)
+"""Numbers of an axle of which one sets a part: spring, damper, tyre."""
 
 LOADS_AGREE = 5e-4
 """Largest deviation of the sum of two axle loads from the kerb mass, as a share of it: half of the promised 0.1 %."""
 
-NOT_NUMBERS = ("tyre_size", "load", "inertia", "car_class", "of_class")
+NOT_NUMBERS = ("tyre_size", "load", "inertia", "car_class", "of_class", "of_load")
 """Fields that are no numbers of a car."""
 
 NAMES = tuple(entry.name for entry in dataclasses.fields(StatedNumbers) if entry.name not in NOT_NUMBERS)
@@ -168,18 +209,28 @@ def option(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
+def stated_numbers(
+    file: Path | None, more: Mapping[str, Any], of_table: Mapping[str, Any] | None = None
+) -> StatedNumbers:
     """Return the numbers of a TOML file and of a command line, which takes precedence.
 
     Args:
         file: TOML file with the names of `StatedNumbers` and tables [load.NAME]; None without a file.
         more: numbers by name, which may be None.
+        of_table: numbers of a table of the car, which typed numbers replace, also where both set the same part.
     """
     table = {} if file is None else read_table(file)
     for name in ("damper_curve_front", "damper_curve_rear"):
         if file is not None and isinstance(table.get(name), str):
             table[name] = str(file.parent / table[name])
     table |= {name: value for name, value in more.items() if value is not None}
+    of_table, typed = dict(of_table or {}), set(table)
+    if typed & {*AXLE_LOADS, "cog_x"} and set(AXLE_LOADS) <= set(of_table):
+        # The mass of the table stays where a typed load replaces its two.
+        of_table["kerb_mass"] = sum(of_table[name] for name in AXLE_LOADS)
+    for name, value in of_table.items():
+        if not any(name in names and typed & set(names) for names in _replaced()):
+            table.setdefault(name, value)
     table |= {name: _load_of(name, table) for name in AXLE_LOADS if isinstance(table.get(name), str)}
     try:
         return build(StatedNumbers, table)
@@ -187,6 +238,13 @@ def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
         text = str(error).replace("StatedNumbers.", "")
         key = text.split(":")[0]
         raise ConfigurationError(f"{option(key)}{text[len(key) :]}" if key in NAMES else text) from None
+
+
+def _replaced() -> list[tuple[str, ...]]:
+    """Return groups of numbers of which a typed one replaces all others of a table."""
+    loads = ("cog_x", "front_axle_load", "rear_axle_load")
+    parts = [tuple(f"{name}_{axle}" for name in names) for names in SAME_PARAMETER for axle in AXLES]
+    return [loads, ("tyre_radius", "tyre_free_radius", "tyre_size"), ("pitch_frequency", "pitch_inertia"), *parts]
 
 
 def _load_of(name: str, table: Mapping[str, Any]) -> float:

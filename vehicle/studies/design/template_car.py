@@ -57,6 +57,18 @@ class TemplateCar:
         """Return the height of the plates under the front wheels [m]."""
         return self.wheels["front"][0].patch[2]
 
+    @property
+    def point_names(self) -> dict[str, tuple[str, ...]]:
+        """Return the names of hardpoints, parts and bushings by axle; parts as "parts.knuckle"."""
+        axles = {word: self.table[self.axle(word)] for word in AXLES}
+        return {
+            word: (
+                *axle.get("hardpoints", {}),
+                *(f"{section}.{name}" for section in ("parts", "bushings") for name in axle.get(section, {})),
+            )
+            for word, axle in axles.items()
+        }
+
     def with_powertrain(self, engine: Mapping[str, Any] | None) -> TemplateCar:
         """Return the template with another powertrain; itself for None."""
         if engine is None:

@@ -44,23 +44,29 @@ def unloaded_radius(size: str) -> float:
 
 
 def with_tyre_size(stated: StatedNumbers, template: TemplateCar, ratio: float) -> StatedNumbers:
-    """Return stated numbers with the loaded radius of their tyre size: unloaded radius less F / k.
+    """Return stated numbers with the loaded radius of a tyre of stated size or free radius: free radius less F / k.
 
-    F is the static load of a front wheel, stated or in proportion to the mass, k the stiffness of the front tyres of
-    the template, scaled as by `scaled_parts`; a stated wheel hop, which changes k, is left out.
+    F is the static load of a front wheel, stated or in proportion to the mass, k the stated stiffness of the front
+    tyres, or of the template, scaled by `scaled_parts`; a stated wheel hop, which changes k, is left out.
 
     Args:
         stated: stated numbers.
         ratio: kerb mass of the new car over the template's [-]; 1 if its parts are not scaled.
     """
-    if stated.tyre_size is None:
+    if stated.tyre_size is None and stated.tyre_free_radius is None:
         return stated
     if stated.tyre_radius is not None and "tyre_radius" not in stated.of_class:
         raise ConfigurationError("--tyre-size and --tyre-radius: the size gives the radius; leave one of the two out")
-    front = stated.front_axle_load or ratio * axle_loads(kerb_model(template.table, template), template)["front"]
-    stiffness = (
+    free = stated.tyre_free_radius or unloaded_radius(str(stated.tyre_size))
+    loads = axle_loads(kerb_model(template.table, template), template)
+    front = stated.front_axle_load
+    if front is None and stated.kerb_mass is not None and stated.cog_x is not None:
+        front = stated.kerb_mass * (1.0 - stated.cog_x / (stated.wheelbase or template.wheelbase))
+    elif front is None:
+        front = ratio * loads["front"]
+    stiffness = stated.tyre_stiffness_front or (
         value_at(template.table, f"{template.tyre_paths['front']}.stiffness")[2] * ratio ** OF_TYRES["stiffness"]
     )
-    radius = unloaded_radius(str(stated.tyre_size)) - front * template.vehicle.gravity / 2.0 / stiffness
+    radius = free - front * template.vehicle.gravity / 2.0 / stiffness
     others = tuple(name for name in stated.of_class if name != "tyre_radius")
-    return dataclasses.replace(stated, tyre_radius=radius, of_class=others)
+    return dataclasses.replace(stated, tyre_radius=radius, of_class=others, of_load=("tyre_radius",))

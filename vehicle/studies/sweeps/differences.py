@@ -18,7 +18,7 @@ from typing import TextIO
 import numpy as np
 from scipy.special import stdtrit
 
-from vehicle.signals.analysis.comfort_error import STUDENT_95, WAVES, difference_error
+from vehicle.signals.analysis.comfort_error import STUDENT_95, difference_error
 from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, wave_names
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.signals.formats.csv_table import RowWriter
@@ -45,7 +45,7 @@ HEADS = (
 )
 """Heads of the columns of a comfort value; those of the weighted value have its name before them."""
 
-PER_VALUE = 2 + 2 * WAVES
+PER_VALUE = 2 + len(wave_names(UNWEIGHTED))
 """Numbers of a comfort value in a row: value, relative error and C_m."""
 
 Numbers = tuple[float, ...]

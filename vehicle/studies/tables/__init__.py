@@ -1,0 +1,1 @@
+"""Tables of cars: names, values and units of points, masses and rates in any layout."""

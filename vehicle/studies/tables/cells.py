@@ -1,0 +1,119 @@
+"""Cells of a table file: CSV with any separator, text with blanks, or all sheets of an XLSX file."""
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.formats.sheet_format import sheet_texts
+from vehicle.signals.formats.text import read_text
+
+LARGEST_TABLE = 5e6
+"""Largest size of a table [byte]; the points and numbers of a car take 1e3 to 1e5."""
+
+NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
+_POINTED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+,\d+")
+"""Number with points between thousands and a decimal comma."""
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Row:
+    """Row of a table: its place for messages, "points.csv:7", the title of its sheet or "", and its cells."""
+
+    where: str
+    sheet: str
+    cells: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CellTable:
+    """Rows of a file, and the meaning of a comma in its numbers: "decimal", "thousands" or "unknown"."""
+
+    rows: tuple[Row, ...]
+    comma: str
+
+    def number(self, row: Row, text: str) -> float | None:
+        """Return the number of a cell; None for another text.
+
+        Raises:
+            DataError: "1,250" in a file without other numbers that show the meaning of a comma.
+        """
+        text = text.replace("\u2212", "-").replace("\u00a0", "").strip()
+        if _POINTED.fullmatch(text):
+            text = text.replace(".", "")
+        if _THOUSANDS.fullmatch(text):
+            if self.comma == "unknown":
+                raise DataError(
+                    f"{row.where}: {text!r} may be a thousand or a decimal number; write it with a decimal point"
+                )
+            if self.comma == "thousands":
+                return float(text.replace(",", ""))
+        return float(text.replace(",", ".")) if NUMBER.fullmatch(text) else None
+
+
+def read_cells(path: Path) -> CellTable:
+    """Read a CSV, text or XLSX file.
+
+    Raises:
+        ConfigurationError: the file is missing or too large.
+        DataError: it is no table.
+    """
+    if not path.is_file():
+        raise ConfigurationError(f"{path}: the file does not exist; give the path of a table (CSV or XLSX)")
+    if path.stat().st_size > LARGEST_TABLE:
+        raise ConfigurationError(f"{path}: is larger than {LARGEST_TABLE / 1e6:g} MB, so it is no table of a car")
+    if path.suffix.lower() in (".xlsx", ".xlsm"):
+        rows = [
+            Row(where=f"{path}: sheet {title!r}, row {number}", sheet=title, cells=cells)
+            for title, sheet in sheet_texts(path).items()
+            for number, cells in enumerate(sheet, 1)
+        ]
+    else:
+        rows = _text_rows(path)
+    if not any(NUMBER.fullmatch(cell) for row in rows for cell in row.cells):
+        raise DataError(f"{path}: has no cell with a number; save names, values and units as CSV or XLSX")
+    return CellTable(rows=tuple(rows), comma=_comma(rows))
+
+
+def _text_rows(path: Path) -> list[Row]:
+    lines = read_text(path).lines
+    sign = next((sign for sign in (";", "\t") if sum(sign in line for line in lines) > 0.3 * len(lines)), ",")
+    if sign == "," and sum("," in line for line in lines) <= 0.3 * sum(bool(line.strip()) for line in lines):
+        sign = " "
+    rows = []
+    for number, line in enumerate(lines, 1):
+        where = f"{path}:{number}"
+        if line.lstrip().startswith(("#", "!", "%", "//")):
+            # A remark may state units and axes.
+            cells = [line.strip()]
+        elif sign == " ":
+            cells = _blank_cells(line)
+        else:
+            try:
+                cells = next(csv.reader([line], delimiter=sign), [])
+            except csv.Error as error:
+                raise DataError(f"{where}: cannot be read ({error}); correct the line") from None
+        rows.append(Row(where=where, sheet="", cells=tuple(cell.strip() for cell in cells)))
+    return rows
+
+
+def _blank_cells(line: str) -> list[str]:
+    """Return the cells of a line with blanks between them: words before the first number are one name."""
+    terms = re.split(r"\s{2,}|\t", line.strip())
+    if len(terms) > 1:
+        return [part for word in terms for part in (word.split() if NUMBER.fullmatch(word.split(" ")[0]) else [word])]
+    terms = line.split()
+    first = next((index for index, word in enumerate(terms) if NUMBER.fullmatch(word)), len(terms))
+    name = " ".join(terms[:first]).rstrip("=:").strip()
+    return ([name] if name else []) + terms[first:]
+
+
+def _comma(rows: list[Row]) -> str:
+    """Return what a comma means in the numbers of a table."""
+    numbers = [cell for row in rows for cell in row.cells if NUMBER.fullmatch(cell) or _THOUSANDS.fullmatch(cell)]
+    commas = [cell for cell in numbers if "," in cell]
+    if any(not _THOUSANDS.fullmatch(cell) for cell in commas):
+        return "decimal"
+    return "thousands" if any("." in cell for cell in numbers) else "unknown"

@@ -1,0 +1,397 @@
+"""Statements of a table: each row as a point, a number, a curve or a remark, in the words and units of the file."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from vehicle.errors import DataError
+from vehicle.studies.tables.axes import stated_axes
+from vehicle.studies.tables.cells import CellTable, Row, read_cells
+from vehicle.studies.tables.name_words import AXLES, CORNERS, NameWords, name_words, right_letters, words_of
+from vehicle.studies.tables.number_names import number_of
+from vehicle.studies.tables.point_names import point_of
+from vehicle.studies.tables.tyre_file import TyreFile
+from vehicle.studies.tables.unit_factor import LENGTH, unit_factor
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Point:
+    """Row of a point: its words, coordinates in the unit of the file, and the unit, "" if none is stated."""
+
+    where: str
+    name: NameWords
+    at: tuple[float, float, float]
+    unit: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Number:
+    """Row of a number: its words, value (a text for the size of a tyre) and unit."""
+
+    where: str
+    name: NameWords
+    value: float | str
+    unit: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Curve:
+    """Block of two columns of a damper: axle ("" if none is stated), velocities and forces with their units."""
+
+    where: str
+    axle: str
+    rows: tuple[tuple[float, float], ...]
+    units: tuple[str, str]
+
+
+@dataclass(slots=True)
+class Statements:
+    """Statements of a file, in its order.
+
+    Attributes:
+        file: name of the file.
+        points, numbers, curves: its rows.
+        bushings: rows of stiffness or damping along x, y, z, with the unit.
+        remarks: texts outside these rows, which may state units, axes and the origin.
+        left_out: texts that are not understood, with their places.
+        tyre: tyre of a `.tir` file; None in other files.
+    """
+
+    file: str
+    points: list[Point] = field(default_factory=list)
+    numbers: list[Number] = field(default_factory=list)
+    curves: list[Curve] = field(default_factory=list)
+    bushings: list[Point] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+    left_out: list[tuple[str, str]] = field(default_factory=list)
+    tyre: TyreFile | None = None
+
+
+COLUMNS = {
+    "name": "keyword name point hardpoint parameter quantity description bezeichnung punkt variable item property "
+            "symbol location element groesse größe kenngröße",
+    "unit": "unit units einheit",
+    "value": "value wert val values",
+    "side": "side symmetry seite",
+    "axle": "axle achse",
+    "skip": "source comment comments note notes reason remark remarks bemerkung quelle reference meaning",
+}  # fmt: skip
+"""Kind of a column -> words of its header."""
+
+KINDS = {word: sort for sort, terms in COLUMNS.items() for word in terms.split()}
+_COORDINATE = re.compile(r"(?:loc|pos|coord|coordinate)?[ _]*([xyz])(?:[ _]*(?:value|coordinate|coord|pos|loc))?", re.I)
+_BUSHING = re.compile(r"(k|c|d|stiffness|damping)[ _]*([xyz])", re.IGNORECASE)
+_UNIT_AT_END = re.compile(r"^(.*?)[\s_]*(?:\[([^\]]*)\]|\(([^)]*)\)|,\s*([^,\s]+)|[ _](mm|cm|inch|kg))$")
+_WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%°\"(/].*)")
+_AXLE_TITLE = re.compile(r"\b(front|rear) (axle|suspension|hardpoints)\b|\b(vorder|hinter)achse", re.IGNORECASE)
+_OF_UNITS = re.compile(
+    r"\bunits?\b|\beinheit|\[(mm|cm|m|in|inch)\]|\(mm\)|\bin mm\b|\bin millimet|\ball\b.*\bmm\b|\blength"
+)
+TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
+
+
+def _triples(columns: Mapping[str, int]) -> list[str]:
+    """Return the letters of the columns k, c, d, s that have x, y and z: stiffness or damping, by their units."""
+    return [letter for letter in "kcds" if {f"{letter}{axis}" for axis in "xyz"} <= set(columns)]
+
+
+def name_and_unit(cell: str) -> tuple[str, str]:
+    """Return the name of a header and its unit such as "x [mm]", "mass (kg)", "track, m", "x_mm"; "" for no unit."""
+    match = _UNIT_AT_END.fullmatch(cell.strip())
+    if match is None:
+        return cell.strip(), ""
+    unit = next(group for group in match.groups()[1:] if group is not None)
+    return (match[1].strip(), unit.strip()) if unit == "" or unit_factor(unit) is not None else (cell.strip(), "")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Heads:
+    """Header of a block: index and unit of each column by its kind, axles of values, columns of names."""
+
+    columns: dict[str, int]
+    units: dict[str, str]
+    axles: dict[int, tuple[str, str]]
+    width: int
+    names: list[int]
+
+
+def statements(path: Path) -> Statements:
+    """Read the statements of a CSV, text or XLSX file.
+
+    Raises:
+        ConfigurationError: the file is missing or too large.
+        DataError: it is no table, or a name or a number is ambiguous.
+    """
+    table = read_cells(path)
+    content = Statements(file=path.name)
+    names = [row.cells[0] for row in table.rows if row.cells]
+    _Reader(table=table, content=content, letters=right_letters(names), stem=path.stem).read()
+    return content
+
+
+@dataclass(slots=True)
+class _Reader:
+    table: CellTable
+    content: Statements
+    letters: dict[str, str]
+    stem: str
+    heads: _Heads | None = None
+    axle: str = ""
+    side: str = ""
+    unit: str = ""
+    curve: list[tuple[float, float]] = field(default_factory=list)
+    coordinates: dict[tuple[str, str, str], dict[str, tuple[float, str, str, NameWords]]] = field(default_factory=dict)
+
+    def read(self) -> None:
+        sheet = None
+        for row in self.table.rows:
+            if row.sheet != sheet:
+                sheet, self.heads, self.unit = row.sheet, None, ""
+                self._title(row.sheet)
+            cells = [cell for cell in row.cells if cell]
+            if not cells:
+                self.heads = None
+            elif cells[0].startswith(("#", "!", "%", "//")):
+                self._remark(" ".join(cells), title=False)
+            elif not self._row(row):
+                text = " ".join(cells)
+                is_remark = bool(_length_unit(text) or "origin" in text.lower() or stated_axes([text], row.where))
+                if len(cells) > 1 and any(map(str.isdigit, " ".join(cells[1:]))) and not is_remark:
+                    self.content.left_out.append((row.where, f"{', '.join(cells)[:60]!r}: not understood"))
+                self._remark(text, title=not is_remark)
+        for (_, axle, side), parts in self.coordinates.items():
+            self._joined(parts, axle, side)
+
+    def _row(self, row: Row) -> bool:
+        """Read a row of numbers or a header; False for a text."""
+        row = self._whole_name(row)
+        values = [self.table.number(row, cell) for cell in row.cells]
+        if self.heads is not None and {"velocity", "force"} <= set(self.heads.columns):
+            pair = [values[self.heads.columns[key]] if self.heads.columns[key] < len(values) else None
+                    for key in ("velocity", "force")]  # fmt: skip
+            if None not in pair:
+                self._curve_row(row, pair)  # type: ignore[arg-type]
+                return True
+            self.heads = None
+        if not any(value is not None for value in values) and not any(map(_WITH_UNIT.fullmatch, row.cells)) \
+                and not any(map(TYRE_SIZE.fullmatch, row.cells)):  # fmt: skip
+            return self._header(row)
+        if self.heads is not None and (triples := _triples(self.heads.columns)):
+            text = self._cell(row, "name")
+            for letter in triples:
+                at = [values[self.heads.columns[f"{letter}{axis}"]] for axis in "xyz"]
+                if None not in at and text:
+                    unit, name = self.heads.units[f"{letter}x"], self._name(row, text)
+                    self.content.bushings.append(Point(where=row.where, name=name, at=tuple(at), unit=unit))  # type: ignore[arg-type]
+            return True
+        if self.heads is not None and "x" in self.heads.columns:
+            return self._point_row(row, values)
+        return self._plain_row(row, values)
+
+    def _whole_name(self, row: Row) -> Row:
+        """Join a name with commas that are not in quotes: "lower arm, front point,0.1,0.2,0.3" has a cell too much."""
+        extra = 0 if self.heads is None else len(row.cells) - self.heads.width
+        if extra <= 0 or self.heads is None or self.heads.columns["name"] != 0:
+            return row
+        return Row(where=row.where, sheet=row.sheet, cells=(", ".join(row.cells[: extra + 1]), *row.cells[extra + 1 :]))
+
+    def _header(self, row: Row) -> bool:
+        columns: dict[str, int] = {}
+        units: dict[str, str] = {}
+        axles: dict[int, tuple[str, str]] = {}
+        names: list[int] = []
+        for index, cell in enumerate(row.cells):
+            text, unit = name_and_unit(cell)
+            plain = words_of(text)
+            coordinate = _COORDINATE.fullmatch(text)
+            if bushing := _BUSHING.fullmatch(text):
+                sort = f"{bushing[1][0].lower()}{bushing[2].lower()}"
+                columns.setdefault(sort, index)
+                units.setdefault(sort, unit)
+                continue
+            sort = coordinate[1].lower() if coordinate else next((KINDS[word] for word in text.lower().split()
+                                                                  if word in KINDS), "")  # fmt: skip
+            if not sort and plain and plain[0] in ("velocity", "speed", "geschwindigkeit", "v"):
+                sort = "velocity"
+            elif not sort and plain and plain[0] in ("force", "kraft", "f") and "velocity" in columns:
+                sort = "force"
+            elif not sort and plain and set(plain) <= {*AXLES, "axle", *CORNERS, "f", "r", "value"}:
+                word = next((word for word in plain if word in (*AXLES, *CORNERS, "f", "r")), "")
+                axles[index] = CORNERS.get(word, ({"f": "front", "r": "rear"}.get(word, word), ""))
+            if sort == "name":
+                names.append(index)
+            if sort and sort not in columns:
+                columns[sort] = index
+                units[sort] = unit
+            elif unit and index in axles:
+                units[f"axle{index}"] = unit
+        points = {"x", "y", "z"} <= set(columns)
+        listed = (
+            points
+            or bool(_triples(columns))
+            or {"velocity", "force"} <= set(columns)
+            or "value" in columns
+            or len(axles) > 1
+        )
+        if not listed:
+            return False
+        if "name" not in columns:
+            free = [index for index in range(len(row.cells)) if index not in {*columns.values(), *axles}]
+            columns["name"] = free[0] if free else 0
+        # "Front suspension (mm), X, Y, Z": the head of the names is a title.
+        title, unit = name_and_unit(row.cells[columns["name"]])
+        if {*words_of(title)} & set(AXLES):
+            self._title(title)
+        self.unit = unit or self.unit
+        self.heads = _Heads(columns=columns, units=units, axles=axles, width=len(row.cells), names=names)
+        return True
+
+    def _point_row(self, row: Row, values: Sequence[float | None]) -> bool:
+        heads = self.heads
+        assert heads is not None  # fmt: skip
+        numbers = [values[heads.columns[key]] if heads.columns[key] < len(values) else None for key in "xyz"]
+        text = row.cells[heads.columns["name"]] if heads.columns["name"] < len(row.cells) else ""
+        if None in numbers or not text:
+            if text and all(number is None for number in numbers):
+                return self._plain_row(row, values)
+            raise DataError(f"{row.where}: point {text!r} has no three coordinates; complete or remove the row")
+        unit = self._cell(row, "unit") or heads.units["x"] or self.unit
+        name = self._name(row, text)
+        self._add_point(row, name, (numbers[0], numbers[1], numbers[2]), unit)  # type: ignore[arg-type]
+        return True
+
+    def _plain_row(self, row: Row, values: Sequence[float | None]) -> bool:
+        """Read name, value and unit; name and three coordinates; or name and a value of each axle."""
+        heads = self.heads
+        at = heads.columns["name"] if heads is not None and "name" in heads.columns else next(
+            (index for index, cell in enumerate(row.cells) if cell and values[index] is None), -1)  # fmt: skip
+        if at < 0 or at >= len(row.cells) or not row.cells[at]:
+            raise DataError(f"{row.where}: {', '.join(filter(None, row.cells))} has no name; name each row of numbers")
+        if heads is not None and len(heads.names) > 1:
+            # A symbol and its description: the first that is known.
+            others = [index for index in heads.names if index < len(row.cells) and row.cells[index]]
+            at = next((index for index in others if number_of(self._name(row, name_and_unit(row.cells[index])[0]))), at)
+        text, unit = name_and_unit(row.cells[at])
+        unit = self._cell(row, "unit") or unit
+        skipped = set() if heads is None else {heads.columns[key] for key in ("unit", "skip") if key in heads.columns}
+        if heads is not None and heads.axles:
+            for index, (axle, side) in heads.axles.items():
+                if index < len(values) and values[index] is not None:
+                    name = self._name(row, text, axle, side)
+                    self._add_number(row, name, values[index], unit or heads.units.get(f"axle{index}", ""))
+            return True
+        after = [(index, value) for index, value in enumerate(values) if value is not None and index not in skipped]
+        if heads is not None and "value" in heads.columns:
+            after = [(index, value) for index, value in after if index == heads.columns["value"]]
+        if len(after) == 3 and after[2][0] - after[0][0] == 2:
+            self._add_point(row, self._name(row, text), tuple(value for _, value in after), unit or self.unit)  # type: ignore[arg-type]
+            return True
+        if not after:
+            joined = next(filter(None, map(_WITH_UNIT.fullmatch, row.cells)), None)
+            size = next(filter(None, map(TYRE_SIZE.fullmatch, row.cells)), None)
+            if size is not None:
+                self._add_number(row, self._name(row, text), size[0], "")
+                return True
+            number = None if joined is None else self.table.number(row, joined[1])
+            if joined is None or number is None or unit_factor(joined[2]) is None:
+                return False
+            self._add_number(row, self._name(row, text), number, joined[2])
+            return True
+        index, value = after[0]
+        if index + 1 < len(row.cells) and unit_factor(row.cells[index + 1].strip("()[]")) is not None:
+            # "sprung mass (ms), 1250, kg": the cell after the value takes precedence.
+            unit = row.cells[index + 1]
+        self._add_number(row, self._name(row, text), value, unit)
+        return True
+
+    def _add_number(self, row: Row, name: NameWords, value: float | str | None, unit: str) -> None:
+        """Enter a number; "wheel centre x" is a coordinate of a point."""
+        last = name.terms[-1] if name.terms else ""
+        if last in ("x", "y", "z") and isinstance(value, float) and number_of(name) is None:
+            point = NameWords(text=re.sub(r"[\s_,.-]*[xyzXYZ]$", "", name.text), terms=name.terms[:-1], axle=name.axle,
+                              side=name.side)  # fmt: skip
+            if (key := point_of(point)) is not None and key != "cog":
+                self.coordinates.setdefault((key, name.axle, name.side), {})[last] = (value, unit, row.where, point)
+                return
+        assert value is not None  # fmt: skip
+        self.content.numbers.append(Number(where=row.where, name=name, value=value, unit=unit))
+
+    def _joined(self, parts: dict[str, tuple[float, str, str, NameWords]], axle: str, side: str) -> None:
+        _, unit, where, name = next(iter(parts.values()))
+        if set(parts) != set("xyz"):
+            raise DataError(f"{where}: point {name.text!r} lacks {', '.join(sorted(set('xyz') - set(parts)))}; add it")
+        at = (parts["x"][0], parts["y"][0], parts["z"][0])
+        self.content.points.append(Point(where=where, name=name, at=at, unit=unit or self.unit))
+
+    def _add_point(self, row: Row, name: NameWords, at: tuple[float, float, float], unit: str) -> None:
+        # The name of a file, "front.csv", holds for its points alone: a table of numbers is one of the car.
+        ends = {word for word in words_of(self.stem) if word in AXLES}
+        if not name.axle and len(ends) == 1:
+            name = replace(name, axle=ends.pop())
+        self.content.points.append(Point(where=row.where, name=name, at=at, unit=unit))
+
+    def _curve_row(self, row: Row, pair: tuple[float, float]) -> None:
+        heads, last = self.heads, self.content.curves[-1] if self.content.curves else None
+        assert heads is not None  # fmt: skip
+        units = (heads.units["velocity"], heads.units["force"])
+        if last is None or not self.curve:
+            last = Curve(where=row.where, axle=self.axle, rows=(), units=units)
+            self.content.curves.append(last)
+        self.curve.append((pair[0], pair[1]))
+        self.content.curves[-1] = Curve(where=last.where, axle=last.axle, rows=tuple(self.curve), units=units)
+
+    def _name(self, row: Row, text: str, axle: str = "", side: str = "") -> NameWords:
+        """Return the words of a name, with axle and side of its columns, its column head or the title above."""
+        letter = self.letters.get(row.cells[0], self.letters.get(text, ""))
+        if index := re.search(r"\(([12])\)$", text):
+            # CarSim counts axles: L_TRACK(2).
+            text, axle = text[: index.start()], AXLES[int(index[1]) - 1]
+        name = name_words(text, right_letter=letter, where=row.where)
+        if point_of(name) in (None, "cog") and number_of(name) is None and "(" in text:
+            name = name_words(re.sub(r"\([^)]*\)", " ", text), right_letter=letter, where=row.where)
+        column = words_of(self._cell(row, "axle"))
+        axle = axle or next((word for word in column if word in AXLES), "")
+        said = words_of(self._cell(row, "side"))
+        both = {"left", "right"} <= set(said)
+        side = side or ("" if both else next((word for word in said if word in ("left", "right", "single")), ""))
+        return NameWords(text=text, terms=name.terms, axle=axle or name.axle or self.axle,
+                         side=side or name.side or self.side)  # fmt: skip
+
+    def _cell(self, row: Row, sort: str) -> str:
+        index = None if self.heads is None else self.heads.columns.get(sort)
+        return row.cells[index] if index is not None and index < len(row.cells) else ""
+
+    def _remark(self, text: str, *, title: bool) -> None:
+        """Keep a text; a title such as "Front axle [mm]" holds for the rows below."""
+        self.content.remarks.append(text)
+        self.curve = []
+        if title:
+            self._title(text)
+        elif match := _AXLE_TITLE.search(text):
+            self.axle = "front" if match[0].lower()[0] in "fv" else "rear"
+        if unit := _length_unit(text):
+            self.unit = unit
+
+    def _title(self, text: str) -> None:
+        terms = words_of(text)
+        ends = {word for word in terms if word in AXLES}
+        sides = {word for word in terms if word in ("left", "right")}
+        self.axle = ends.pop() if len(ends) == 1 else ""
+        self.side = sides.pop() if len(sides) == 1 else ""
+
+
+def _length_unit(text: str) -> str:
+    """Return the unit of length that a remark states: "all in mm", "units: mm", "x [m]"; "" for none."""
+    terms = list(_units(text))
+    return terms[0] if len(set(terms)) == 1 else ""
+
+
+def _units(text: str) -> Iterator[str]:
+    lowered = text.lower()
+    stated = _OF_UNITS.search(lowered)
+    if stated:
+        for word in re.findall(r"[a-z]+", lowered[stated.start() :]):
+            unit = unit_factor(word)
+            if unit is not None and unit.dimension == LENGTH and word != "in":
+                yield {"millimetres": "mm", "millimeters": "mm", "millimeter": "mm"}.get(word, word)

@@ -1,0 +1,215 @@
+"""Numbers of a table in SI units: units stated or by size, masses of wheels and axles, both sides of an axle."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from vehicle.digits import number as shown
+from vehicle.errors import DataError
+from vehicle.studies.tables.name_words import words_of
+from vehicle.studies.tables.number_names import GUESSED, PER_WHEEL, QUANTITIES, SI, number_of
+from vehicle.studies.tables.statements import Number, Statements
+from vehicle.studies.tables.unit_factor import MASS, unit_factor
+
+AXLES = ("front", "rear")
+GRAVITY = 9.81
+"""Acceleration of gravity that turns a wheel load in N into kg [m/s2]."""
+
+ONE_WHEEL, WHOLE_AXLE = 55.0, 75.0
+"""Unsprung mass without a word [kg]: up to the first of a wheel, from the second on of an axle."""
+
+AGREE = 0.01
+"""Relative difference of two statements of one number that is round-off."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Stated:
+    """Number in SI units with its row: place, name and value as in the file."""
+
+    value: float
+    where: str
+    text: str
+
+
+@dataclass(slots=True)
+class CarNumbers:
+    """Numbers of a table.
+
+    Attributes:
+        stated: values by names of `StatedNumbers`.
+        origins: place and text of the rows behind each of them.
+        parameters: values and origins by axle and path, of parts without such a name.
+        guessed, left_out: sentences with the place or "".
+    """
+
+    stated: dict[str, Any] = field(default_factory=dict)
+    origins: dict[str, str] = field(default_factory=dict)
+    parameters: dict[tuple[str, str], tuple[float, str]] = field(default_factory=dict)
+    guessed: list[tuple[str, str]] = field(default_factory=list)
+    left_out: list[tuple[str, str]] = field(default_factory=list)
+
+
+Values = dict[tuple[str, str], Stated]
+"""Numbers by key and axle, "" for the whole car or both axles."""
+
+
+def read_numbers(content: Statements, result: CarNumbers) -> Values:
+    """Return the numbers of a table in SI units by key and axle; enter guesses and what is left out.
+
+    Raises:
+        DataError: a unit of another dimension, an impossible size, or two different values of one number.
+    """
+    values: Values = {}
+    corners: dict[tuple[str, str], dict[str, Stated]] = {}
+    per_wheel, symbols = _by_the_sum(content), list[str]()
+    for row in content.numbers:
+        listed = number_of(row.name)
+        if listed is None and row.name.axle and row.name.axle not in words_of(row.name.text):
+            # The axle of a title above it does not hold for a number of the whole car.
+            listed = number_of(replace(row.name, axle=""))
+        if isinstance(row.value, str):
+            if row.name.has("tyre") or row.name.has("wheel"):
+                _enter_size(row, result)
+            else:
+                result.left_out.append((row.where, f"{row.name.text!r}: no number of a car here"))
+            continue
+        if listed is None:
+            result.left_out.append((row.where, f"{row.name.text!r} = {row.value:g}: no number of a car here"))
+            continue
+        key, axle, symbol = listed
+        if key == "axle_load" and row.unit.strip() == "%":
+            key = "front_share"
+        value = Stated(value=_si(row, key, result), where=row.where, text=_text(row))
+        if symbol and len(row.name.terms) <= 2 and row.name.text.lower() not in ("mass", "wheelbase"):
+            symbols.append(f"{row.name.text} {key_words(key, axle)}")
+        value = _of_axle(row, key, value, result, per_wheel)
+        _require_size(row, key, value.value)
+        if row.name.side in ("left", "right"):
+            sides = corners.setdefault((key, axle), {})
+            if row.name.side in sides:
+                raise DataError(f"{row.where}: {row.name.text!r} is stated twice; remove one")
+            sides[row.name.side] = value
+            continue
+        if (key, axle) in values and abs(values[key, axle].value - value.value) > 1e-6 * abs(value.value):
+            raise DataError(
+                f"{row.where}: {row.name.text!r} and {values[key, axle].text} ({values[key, axle].where}) are two "
+                f"values of {key_words(key, axle)}; remove one, or name the axle"
+            )
+        values[key, axle] = value
+    if symbols:
+        result.guessed.append(("", f"symbols: {', '.join(symbols)}"))
+    for (key, axle), sides in corners.items():
+        values[key, axle] = _both_sides(key, axle, sides, result)
+    return values
+
+
+def _si(row: Number, key: str, result: CarNumbers) -> float:
+    """Return a number in its SI unit; a unit that is not stated must follow from the size."""
+    quantity = QUANTITIES[key]
+    assert isinstance(row.value, float)  # fmt: skip
+    if row.unit:
+        unit = unit_factor(row.unit, quantity.dimension)
+        if key == "axle_load" and unit is not None and unit.dimension == (1, 1, -2, 0):
+            return row.value * unit.factor / GRAVITY
+        if key == "front_share" and row.unit == "kg":
+            unit = None
+        if unit is None or unit.dimension != quantity.dimension:
+            raise DataError(f"{row.where}: {row.name.text!r} has the unit {row.unit!r}, but {key_words(key, '')} needs "
+                            f"one such as {' or '.join(GUESSED[quantity.dimension])}; correct one of both")  # fmt: skip
+        return row.value * unit.factor
+    if key == "front_share" and row.value > 1.0:
+        return 0.01 * row.value
+    low, high = quantity.sizes
+    fitting = [(text, unit.factor) for text in GUESSED[quantity.dimension]
+               if (unit := unit_factor(text)) is not None and low <= row.value * unit.factor <= high]  # fmt: skip
+    if len(fitting) != 1:
+        raise DataError(f"{row.where}: {row.name.text!r} = {row.value:g} has no unit, and the size of "
+                        f"{'several units' if fitting else 'none'} of {', '.join(GUESSED[quantity.dimension])}; write "
+                        "its unit")  # fmt: skip
+    if fitting[0][0] != "-":
+        result.guessed.append((row.where, f"{row.name.text!r} = {row.value:g}: in {fitting[0][0]}, by its size"))
+    return row.value * fitting[0][1]
+
+
+def _by_the_sum(content: Statements) -> bool | None:
+    """Return whether unsprung masses are of a wheel, by the masses of car and body; None: unknown.
+
+    m = m_s + m_uf + m_ur with masses of axles, m = m_s + 2 m_uf + 2 m_ur with masses of wheels.
+    """
+    masses: dict[str, list[float]] = {}
+    for row in content.numbers:
+        listed = number_of(row.name)
+        if (
+            listed is not None
+            and isinstance(row.value, float)
+            and listed[0] in ("kerb_mass", "sprung_mass", "unsprung_mass")
+        ):
+            unit = unit_factor(row.unit or "kg", MASS)
+            masses.setdefault(listed[0], []).append(row.value * (1.0 if unit is None else unit.factor))
+    sizes = [len(masses.get(key, ())) for key in ("kerb_mass", "sprung_mass", "unsprung_mass")]
+    if sizes not in ([1, 1, 2], [1, 1, 1]):
+        return None
+    (kerb,), (sprung,), unsprung = masses["kerb_mass"], masses["sprung_mass"], masses["unsprung_mass"]
+    axles = sum(unsprung) * (2.0 if len(unsprung) == 1 else 1.0)
+    errors = [abs(sprung + factor * axles - kerb) for factor in (1.0, 2.0)]
+    return errors[1] < errors[0] if min(errors) < AGREE * kerb else None
+
+
+def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_sum: bool | None) -> Stated:
+    """Return masses of an axle from masses of a wheel; `by_the_sum`: see `_by_the_sum`."""
+    if key not in ("unsprung_mass", "axle_load", "sprung_mass") or row.name.side in ("left", "right"):
+        return value
+    terms, axle = set(row.name.terms) | set(row.unit.lower().split()), row.name.axle
+    per_wheel = bool(terms & set(PER_WHEEL))
+    if key == "unsprung_mass" and by_the_sum is not None:
+        per_wheel = by_the_sum
+    elif not per_wheel and key == "unsprung_mass" and "axle" not in row.name.text.lower():
+        if ONE_WHEEL < value.value < WHOLE_AXLE:
+            raise DataError(f"{row.where}: {row.name.text!r} = {value.value:g} kg may be the mass of a wheel or of an "
+                            "axle; write \"per wheel\" or \"axle\" in its name")  # fmt: skip
+        per_wheel = value.value <= ONE_WHEEL
+        result.guessed.append(
+            (row.where, f"{row.name.text!r}: of {'a wheel' if per_wheel else 'an axle'}, by its size")
+        )
+    if per_wheel and (key != "sprung_mass" or axle or terms & {"corner", "quarter"}):
+        return Stated(value=2.0 * value.value, where=value.where, text=f"2 x {value.text}")
+    return value
+
+
+def _both_sides(key: str, axle: str, sides: Mapping[str, Stated], result: CarNumbers) -> Stated:
+    """Return the number of an axle from its two wheels: the sum of masses, the mean of all others."""
+    if set(sides) != {"left", "right"}:
+        (single,) = sides.values()
+        result.guessed.append((single.where, f"{single.text}: the same on the other side"))
+        factor = 2.0 if key in ("axle_load", "unsprung_mass", "sprung_mass") else 1.0
+        return Stated(value=factor * single.value, where=single.where, text=single.text)
+    left, right = sides["left"], sides["right"]
+    if abs(left.value - right.value) > AGREE * abs(left.value):
+        result.left_out.append((left.where, f"difference of {left.text} and {right.text}: the car is symmetric"))
+    factor = 1.0 if key in ("axle_load", "unsprung_mass", "sprung_mass") else 0.5
+    return Stated(value=factor * (left.value + right.value), where=left.where, text=f"{left.text}, {right.text}")
+
+
+def _require_size(row: Number, key: str, value: float) -> None:
+    low, high = QUANTITIES[key].sizes
+    if not (math.isfinite(value) and low <= value <= high):
+        unit = SI[QUANTITIES[key].dimension]
+        raise DataError(f"{row.where}: {_text(row)} is {shown(value, 4)} {unit}, must be {low:g} to {high:g} {unit}; "
+                        "check value and unit")  # fmt: skip
+
+
+def _text(row: Number) -> str:
+    return f"{row.name.text} = {row.value:g} {row.unit}".strip() if isinstance(row.value, float) else row.name.text
+
+
+def key_words(key: str, axle: str) -> str:
+    """Return a number in words: "wheel rate front"."""
+    return f"{key.replace('_', ' ')} {axle}".strip()
+
+
+def _enter_size(row: Number, result: CarNumbers) -> None:
+    if row.name.axle == "rear" and "tyre_size" in result.stated:
+        result.left_out.append((row.where, f"{row.name.text!r} {row.value}: the car has one radius, of the front"))
+        return
+    result.stated["tyre_size"], result.origins["tyre_size"] = row.value, f"{row.name.text} ({row.where})"
