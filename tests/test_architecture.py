@@ -25,11 +25,12 @@ WINGS = {
     "drawing": ("rendering", "notebook"),
     "runs": ("car", "figures", "comparison", "output", "targets", "report"),
     "handover": ("fmu", "page", "bench"),
-<<<<<<< HEAD
-    "studies": ("design", "mounts", "dampers", "diagnosis", "replication", "sweeps", "tuning", "optimisation"),
-=======
-    "studies": ("tables", "design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
->>>>>>> main
+    "studies": (
+        "tables",
+        *("design", "mounts", "dampers", "diagnosis", "replication", "sweeps"),
+        "tuning",
+        "optimisation",
+    ),
     "commands": (),
 }
 """Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
@@ -98,18 +99,11 @@ ROOMS: dict[str, set[str]] = {
     | {"records", "reduced", "rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "excitation", "figures", "formats", "output", "parameters", "rendering"}
     | {"replacement", "sweeps", "targets"},
-<<<<<<< HEAD
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "diagnosis"}
-    | {"excitation", "flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output", "page"}
-    | {"parameters", "records", "rendering", "replication", "report", "sweeps", "threads", "tuning", "version"},
+    | {"excitation", "flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
+    | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps", "tables", "threads"}
+    | {"tuning", "version"},
     "__init__": {"car", "comparison", "dampers", "diagnosis", "excitation", "figures", "fmu", "formats", "handed_down"}
-=======
-    "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
-    | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output", "page"}
-    | {"parameters", "records", "rendering", "replication", "report", "sweeps", "tables", "threads", "tuning"}
-    | {"version"},
-    "__init__": {"car", "comparison", "dampers", "excitation", "figures", "fmu", "formats", "handed_down"}
->>>>>>> main
     | {"laws", "mounts", "optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},

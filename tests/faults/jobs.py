@@ -116,15 +116,12 @@ def commands(inputs: Path) -> list[Written]:
     first, second = signal_file(inputs / "first.csv", 3.0), signal_file(inputs / "second.csv", 4.0)
     mounts = mount_file(inputs / "mount1.csv", 200.0), mount_file(inputs / "mount2.csv", 300.0)
     dampers = damper_file(inputs / "damper1.csv", 1200.0), damper_file(inputs / "damper2.csv", 1500.0)
-<<<<<<< HEAD
     drives = drive_file(inputs / "drive1.csv", 1), drive_file(inputs / "drive2.csv", 2)
-=======
     tables = inputs / "car1.csv", inputs / "car2.csv"
     for path, mass in zip(tables, (1450, 1500), strict=True):
         path.write_text(f"mass,{mass},kg\nfront wheel centre x,0,mm\nfront wheel centre y,750,mm\n"
                         "front wheel centre z,300,mm\nfront strut top x,40,mm\nfront strut top y,571,mm\n"
                         "front strut top z,765,mm\naxes: Adams\n")  # fmt: skip
->>>>>>> main
     runs = inputs / "run1", inputs / "run2"
     for run, source in zip(runs, (first, second), strict=True):
         if not run.exists():
