@@ -69,7 +69,7 @@ ROOMS: dict[str, set[str]] = {
     "kinematics": {"assembly", "flexbody", "laws", "parameters", "simulation"},
     "linear": {"assembly", "excitation", "flexbody", "laws", "parameters", "simulation"},
     "reduced": {"analysis", "core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
-    "steady": {"laws", "linear", "parameters", "reduced"},
+    "steady": {"excitation", "laws", "linear", "parameters", "reduced", "simulation"},
     "rendering": {"analysis", "assembly", "kinematics", "parameters", "shapes", "simulation", "threads"},
     "notebook": {"analysis", "records", "rendering", "simulation"},
     "car": {"handed_down", "analysis", "excitation", "flexbody", "kinematics", "laws", "linear", "notebook"}

@@ -189,6 +189,7 @@ HANDED |= {name: _handed(name) for name in ("load_run", "save_car", "save_run", 
 HANDED["diagnose_car"] = lambda *given, **options: import_module("vehicle.studies.diagnosis.diagnosis").diagnose_car(
     *given, **options
 )
+HANDED["steady_run"] = lambda *given: import_module("vehicle.runs.car.steady_run").car_steady(*given)
 HANDED["figure_of"] = lambda run, name: import_module("vehicle.runs.figures.value").figure_of(run, name)
 
 

@@ -12,18 +12,16 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.input_options import input_of, signal_options
 from vehicle.commands.options import (
-    VEHICLE_HELP,
+    car_argument,
     car_of,
     command_parser,
     measure_option,
     message_options,
     read,
-    set_option,
     setting_options,
 )
 from vehicle.commands.parser import Parser
 from vehicle.model.parameters.car_choice import CarChoice
-from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.settings import Settings, part, setting
 from vehicle.signals.excitation.input_settings import DriveInput, PlateSettings
 
@@ -71,8 +69,7 @@ def parser() -> Parser:
     parser = command_parser(
         "bench", "Open a local web page whose sliders change a car, and whose curves show comfort, FRFs and slip."
     )
-    parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
-    set_option(parser)
+    car_argument(parser)
     file = signal_options(parser, precision=False)
     setting_options(file, BenchSettings, "first")
     setting_options(parser, BenchSettings, "seconds")

@@ -9,16 +9,14 @@ from typing import TYPE_CHECKING
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.options import (
-    VEHICLE_HELP,
+    car_argument,
     command_parser,
     message_options,
     output_options,
-    set_option,
     setting_options,
 )
 from vehicle.commands.parser import Parser
 from vehicle.model.parameters.car_choice import CarChoice
-from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.names import FMI_VERSIONS
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, part, setting
@@ -60,8 +58,7 @@ class FmuSettings(Settings):
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("fmu", "Write a car as an FMU (FMI 2.0 or 3.0) for Simulink, OpenModelica and others.")
-    parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
-    set_option(parser)
+    car_argument(parser)
     setting_options(parser, FmuSettings, "speed", "fmi", "channels", "step")
     output_options(parser, None, default="NAME.fmu", metavar="FILE.fmu")
     message_options(parser, quiet=True)

@@ -134,6 +134,18 @@ def acceleration_options(group: argparse._ActionsContainer) -> None:
         group.add_argument(f"--{name}", type=float, metavar="M/S2", help=f"{meanings[name]} [m/s2]; default: 0")
 
 
+def car_argument(parser: Parser, command: str = "") -> None:
+    """Add the car by its place, and --set.
+
+    Args:
+        command: name of a command without --vehicle, whose message then names the place; empty for others.
+    """
+    parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
+    set_option(parser)
+    if command:
+        parser.former("--vehicle", f"--vehicle: no such option; name the car first, for example `{command} sedan`")
+
+
 def set_option(parser: argparse._ActionsContainer) -> None:
     """Add --set, which changes the car."""
     parser.add_argument(

@@ -8,18 +8,16 @@ from typing import Any
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.options import (
-    VEHICLE_HELP,
     acceleration_options,
+    car_argument,
     command_parser,
     extra_output_options,
     message_options,
-    set_option,
     setting_options,
 )
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.car_choice import CarChoice
-from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, part, setting
 
@@ -27,12 +25,10 @@ from vehicle.settings import Settings, part, setting
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("show", "Print masses, stiffnesses, frequencies, geometry and parameters of a car.")
-    parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
-    set_option(parser)
+    car_argument(parser, "show")
     acceleration_options(parser)
     setting_options(parser, ShowSettings, "search")
     extra_output_options(parser, "car.png (drawing with dimensions), car.json and parameters.csv")
-    parser.former("--vehicle", "--vehicle: no such option; name the car first, for example `show sedan`")
     parser.add_argument("--json", action="store_true", help="print JSON")
     message_options(parser)
     return parser

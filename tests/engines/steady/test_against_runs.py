@@ -62,6 +62,21 @@ def test_the_first_harmonic_is_that_of_the_settled_run(law):
         assert abs(found.load[0, 0]) < 0.05
 
 
+@pytest.mark.parametrize("file", ["focus", "sedan", "kinematic_reference"])
+def test_other_cars(file):
+    """One plate, dampers with tables, and rigid axles on rolling tyres; 207 values of 15 cars and laws: median 0.004 %.
+
+    Near 4 Hz at 0.1 mm a run needs 200 cycles to come within 0.06 %, and is 4 % off after 60.
+    """
+    car = Car.load(file, ["solver.record_rate=4000", *(["driving.speed=22.2"] if file != "focus" else [])])
+    found = car.levels(frequency=9.0, level=1e-3, channels=CHANNELS[:4], samples=512)
+    expected, _ = settled(car, 9.0, 1e-3, channels=CHANNELS[:4])
+    validated(
+        "Reduced engine", f"first harmonics of {file} at 9 Hz, 1 mm: periodic state", found.frf[:, 0, 0], expected,
+        rel=5e-4, source="second derivation: its run in time after 60 cycles", unit="m/s2 or N per m",
+    )  # fmt: skip
+
+
 def test_rolling_tyres_have_the_force_of_their_present_load():
     """On the slope the force is a product of load and slope, so it has twice the frequency: 0.59, without it 0.40."""
     car = Car.load("focus_road", ["driving.speed=22.2", "solver.record_rate=4000"])
@@ -86,3 +101,20 @@ def test_the_first_harmonic_is_that_of_mujoco():
         "Reduced engine", "first harmonics of a car at 11 Hz, 1.2 mm in MuJoCo: periodic state", found.frf[:, 0, 0],
         expected, rel=5e-4, source="second derivation: MuJoCo after 40 cycles", unit="m/s2 or N per m",
     )  # fmt: skip
+
+
+def test_two_states_are_followed_from_below_and_from_above():
+    """Friction that falls by 33 700 N s/m, while the car holds 1505: the certificate says no."""
+    front = ["front.damper.friction_law=stribeck", "front.damper.coulomb_friction=125",
+             "front.damper.stribeck_friction=250", "front.damper.stribeck_velocity=0.005"]  # fmt: skip
+    rear = ["rear.damper.friction_law=stribeck", "rear.damper.coulomb_friction=40", "rear.damper.stribeck_friction=60"]
+    car = Car.load("focus_road", [*front, *rear, "solver.record_rate=4000"])
+    level = np.geomspace(1e-4, 6e-4, 10)[6:9]
+    found = car.levels(frequency=4.87, level=level)
+    assert found.certificate == ["no"] and found.several.tolist() == [[False, False, True]]
+    below, above = found.branches[:, 0, 0]
+    np.testing.assert_allclose(below[:2], above[:2], rtol=1e-5)
+    assert abs(above[2] / below[2] - 1.0) > 1e-3
+    # A run that begins at rest comes to one of both.
+    run, _ = settled(car, 4.87, level[2], channels=("seat_rail_acc_z",))
+    assert np.min(np.abs(found.branches[:, 0, 0, 2] / run - 1.0)) < 5e-4

@@ -1,4 +1,4 @@
-"""The splitting on systems that are known in closed form: Den Hartog's oscillator, linear limits, energy."""
+"""The splitting on systems that are known in closed form: Den Hartog, Caughey, linear limits, energy."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -15,6 +15,7 @@ from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.steady.car_ports import car_ports
 from vehicle.engines.steady.channel_rows import channel_rows
 from vehicle.engines.steady.cycle import Cycle
+from vehicle.engines.steady.law_ports import Play
 from vehicle.engines.steady.level_states import level_states
 from vehicle.engines.steady.plant import Plant
 from vehicle.engines.steady.splitting import periodic_forces
@@ -25,8 +26,9 @@ STIFFNESS, MASS = 2e4, 50.0
 
 def states(model, dampers, frequency, level, channels, **more):
     return level_states(
-        model, dampers, tyre_load={"fr": 1e6, "fl": 1e6}, loads=NO_LOADS, plates=np.array([1.0, 0.0]),
-        frequency=np.atleast_1d(frequency), level=np.atleast_1d(level), channels=channels, **more,
+        model, dampers, tyre_load={"fr": 1e6, "fl": 1e6}, loads=NO_LOADS,
+        shares=np.tile([1.0, 0.0], (np.size(frequency), 1)), frequency=np.atleast_1d(frequency),
+        level=np.atleast_1d(level), channels=channels, **more,
     )  # fmt: skip
 
 
@@ -54,7 +56,7 @@ def test_den_hartog(ratio, samples):
     speed = ratio * np.sqrt(STIFFNESS / MASS)
     table = plant.responses(speed * cycle.harmonics)
     drive = np.zeros((1, 1, len(cycle.harmonics)), dtype=complex)
-    drive[0, 0, 0] = level * table.plates[0, 0, 0]
+    drive[0, 0, 0] = level * table.inputs[0, 0, 0]
     scaling = ports.ports[0].scaling(np.abs(table.forces[:1, 0, 0]))[None]
     found = periodic_forces(ports.ports, cycle, table.forces[None], drive, scaling, tolerance=1e-5)
     assert found.ended.all()
@@ -66,6 +68,39 @@ def test_den_hartog(ratio, samples):
         "Dampers and friction", f"largest displacement of an oscillator with Coulomb friction at {ratio:g} w_n",
         1e3 * np.max(np.abs(displacement)), 1e3 * level * np.sqrt(v**2 - (share * h) ** 2), rel=5e-4, unit="mm",
         source="closed form: Den Hartog, Trans. ASME 53 (1931), APM-53-9, motion without stops",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("upper", [True, False])
+@pytest.mark.parametrize("ratio", [1.5, 6.0, 20.0])
+def test_caughey(ratio, upper):
+    """Bilinear hysteresis, k1 x and one Jenkins element, on both sides of the resonance.
+
+    With the amplitude A, cos(t) = 1 - 2 x_y/A, C = A k2 (t - sin(2 t)/2)/pi and S = A k2 sin(t)^2/pi, averaging gives
+    ((k1 - m w^2) A + C)^2 + S^2 = F^2. It is exact to the order (k2/k1)^2: higher harmonics of x are k2/(8 k1).
+    """
+    hysteresis, yielding = 0.01 * STIFFNESS, 1e-3
+    amplitude = ratio * yielding
+    turn = np.arccos(1.0 - 2.0 / ratio)
+    spring = hysteresis * (turn - 0.5 * np.sin(2.0 * turn)) / np.pi
+    loss = amplitude * hysteresis * np.sin(turn) ** 2 / np.pi
+    force, side = 1.3 * loss, "above" if upper else "below"
+    beside = np.sqrt(force**2 - loss**2) / amplitude * (1.0 if upper else -1.0)
+    speed = np.sqrt((STIFFNESS + spring + beside) / MASS)
+    cycle = Cycle(512, True)
+    port = Play(base=0, of_velocity=False, share=0.5, stiffness=np.array([hysteresis]), stroke=np.array([yielding]))
+    effect = 1.0 / (STIFFNESS - MASS * (speed * cycle.harmonics) ** 2)
+    drive = np.zeros((1, 1, len(cycle.harmonics)), dtype=complex)
+    drive[0, 0, 0] = force * effect[0]
+    scaling = port.scaling(np.abs(effect[:1]))[None]
+    found = periodic_forces([port], cycle, effect[None, None, None] + 0j, drive, scaling)
+    assert found.ended.all()
+    displacement = drive[0, 0] - effect * cycle.amplitudes(found.force)[0, 0]
+    validated(
+        "Dampers and friction",
+        f"amplitude of an oscillator with bilinear hysteresis over its yield {side} its resonance, {ratio:g}",
+        np.abs(displacement[0]) / yielding, ratio, rel=2e-4,
+        source="closed form: Caughey, J. Appl. Mech. 27 (1960) 640, averaging",
     )  # fmt: skip
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from vehicle import Car, ConfigurationError
-from vehicle.runs.car.levels import crossing, plate_shares
+from vehicle.runs.car.level_inputs import plate_shares
+from vehicle.runs.car.levels import crossing
 
 WHEELS = ("fr", "fl", "rr", "rl")
 FREQUENCY, LEVEL = np.geomspace(2.0, 6.0, 25), np.geomspace(1e-5, 1e-2, 13)
@@ -78,7 +79,7 @@ def test_a_cut_is_computed_at_its_own_frequency(states):
 
 
 def test_a_point_without_a_result_is_a_counted_hole(car, monkeypatch):
-    limits = {"present": None, "tolerance": 1e-7, "limit": 5, "ladder": ((1.0, 1.0),)}
+    limits = {"present": None, "tolerance": 1e-7, "limit": 5, "ladder": ((1.0, 1.0),), "start": None}
     monkeypatch.setattr("vehicle.engines.steady.splitting.periodic_forces.__kwdefaults__", limits)
     found = car.levels(frequency=[3.0], level=[1e-5, 3e-3])
     left = ~found.ended

@@ -38,15 +38,17 @@ class LevelPicture:
 
     Attributes:
         frequency: frequencies [Hz]; (f,).
-        level: levels [mm]; (l,).
+        level: levels; (l,).
+        amplitude: quantity and unit of the levels.
         size: magnitude of the FRF; (f, l), NaN without a result.
         label: quantity and unit of the magnitude.
-        slipping: level at which each damper begins to slip [mm], by its name in words; (f,) each.
+        slipping: level at which each damper begins to slip, by its name in words; (f,) each.
         outside: True where the linear geometry is not valid; (f, l).
     """
 
     frequency: Vector
     level: Vector
+    amplitude: str
     size: Vector
     label: str
     slipping: Mapping[str, Vector]
@@ -76,13 +78,11 @@ def plot_level_map(path: Path, data: LevelPicture, rows: Sequence[int], title: s
         _legend(left)
         colours = colormaps["plasma"](np.linspace(0.0, 0.88, len(rows)))
         for row, colour in zip(rows, colours, strict=True):
-            right.plot(
-                data.frequency, data.size[:, row], color=colour, label=f"{data.level[row]:.3g} mm", linewidth=1.3
-            )
+            right.plot(data.frequency, data.size[:, row], color=colour, label=number(data.level[row]), linewidth=1.3)
         right.set(xscale="log", yscale="log", xlim=data.frequency[[0, -1]], xlabel="frequency [Hz]", ylabel=data.label)
         right.yaxis.set_major_formatter(power_of_ten)
-        _frequency_ticks(right, data.frequency)
-        right.legend(title="amplitude of the plates", loc="best", ncols=1 + (len(rows) > 5))
+        frequency_ticks(right, data.frequency)
+        right.legend(title=data.amplitude, loc="best", ncols=1 + (len(rows) > 5))
 
 
 def plot_level_damping(
@@ -142,7 +142,7 @@ def plot_level_damping(
         _slip_lines(last, data, COLOURS)
         _legend(last)
         for axes in (first, second, third):
-            axes.set(xlim=data.level[[0, -1]], xlabel="amplitude of the plates [mm]")
+            axes.set(xlim=data.level[[0, -1]], xlabel=data.amplitude)
             _plain_log(axes.xaxis, data.level)
 
 
@@ -194,10 +194,10 @@ def _map(axes: Axes, data: LevelPicture, values: Vector, colours: str) -> Any:
         x, y, np.ma.masked_invalid(values.T), cmap=table, norm=norm, rasterized=True,
         shading="gouraud" if smooth else "flat",
     )  # fmt: skip
-    axes.set(xscale="log", yscale="log", xlabel="frequency [Hz]", ylabel="amplitude of the plates [mm]")
+    axes.set(xscale="log", yscale="log", xlabel="frequency [Hz]", ylabel=data.amplitude)
     axes.set(xlim=data.frequency[[0, -1]], ylim=data.level[[0, -1]])
     axes.grid(visible=False)
-    _frequency_ticks(axes, data.frequency)
+    frequency_ticks(axes, data.frequency)
     _plain_log(axes.yaxis, data.level)
     axes.set_facecolor("#b0b0b0")
     if data.outside.any():
@@ -230,7 +230,8 @@ def _edges(centres: Vector) -> Vector:
     return np.concatenate([[centres[0] ** 2 / middle[0]], middle, [centres[-1] ** 2 / middle[-1]]])
 
 
-def _frequency_ticks(axes: Axes, frequency: Vector) -> None:
+def frequency_ticks(axes: Axes, frequency: Vector) -> None:
+    """Label frequencies [Hz] on a logarithmic axis."""
     ticks = [tick for tick in TICKS if frequency[0] <= tick <= frequency[-1]]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)

@@ -65,3 +65,12 @@ def acceleration(position: Vector, interval: float) -> Vector:
 def continued(displacement: float, velocity: float, acceleration: float, t: Vector) -> Vector:
     """Extrapolate a plate displacement with constant acceleration over times t [s]: z + z' t + z'' t^2 / 2."""
     return displacement + velocity * t + 0.5 * acceleration * t**2
+
+
+def acceleration_gain(angle: Vector) -> Vector:
+    """Return the gain of a recorded acceleration over its displacement, times the square of the sampling interval.
+
+    Args:
+        angle: angular frequency times sampling interval; (m,).
+    """
+    return np.asarray(WEIGHTS @ np.cos(np.arange(-AHEAD, AHEAD + 1)[:, None] * angle))

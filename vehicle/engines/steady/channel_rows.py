@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from vehicle.arrays import Mask, Vector
 from vehicle.engines.linear.load_rows import LoadRows
-from vehicle.engines.reduced.load_outputs import direct_forces, direct_laws, direct_slopes, load_outputs
+from vehicle.engines.reduced.load_outputs import (
+    direct_applied,
+    direct_forces,
+    direct_laws,
+    direct_slopes,
+    load_outputs,
+)
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.errors import ConfigurationError
 
@@ -23,21 +29,23 @@ class ChannelRows:
         forces: rows over the forces p of the base columns at the same instant, as they act in y = Y0 z - Y p; (rows,
             base).
         slopes: rows over the slope velocities of rolling tyres at the same instant; (rows, w), (rows, 0).
+        applied: rows over the histories of applied forces at the same instant; (rows, lines).
         accelerations: True for accelerations; (rows,).
     """
 
     outputs: Outputs
     forces: Vector
     slopes: Vector
+    applied: Vector
     accelerations: Mask
 
     def __add__(self, other: ChannelRows) -> ChannelRows:
         """Return these rows followed by others."""
-        pairs = ((getattr(self, name), getattr(other, name)) for name in ("forces", "slopes", "accelerations"))
-        forces, slopes, accelerations = (np.concatenate(pair) for pair in pairs)
-        return ChannelRows(
-            outputs=self.outputs + other.outputs, forces=forces, slopes=slopes, accelerations=accelerations
-        )
+        arrays = {
+            name: np.concatenate([getattr(self, name), getattr(other, name)])
+            for name in ("forces", "slopes", "applied", "accelerations")
+        }
+        return ChannelRows(outputs=self.outputs + other.outputs, **arrays)
 
 
 def plain_rows(model: PoleModel, outputs: Outputs) -> ChannelRows:
@@ -47,6 +55,7 @@ def plain_rows(model: PoleModel, outputs: Outputs) -> ChannelRows:
         outputs=outputs,
         forces=np.zeros((count, base_columns(model))),
         slopes=np.zeros((count, model.slope.shape[1])),
+        applied=np.zeros((count, model.applied.shape[1])),
         accelerations=np.zeros(count, dtype=bool),
     )
 
@@ -86,8 +95,7 @@ def channel_rows(model: PoleModel, channels: Sequence[str], loads: LoadRows) -> 
 def _row(model: PoleModel, name: str, loads: LoadRows) -> ChannelRows:
     wheels, dampers = model.matrices.system.inputs, model.matrices.damper_names
     if name in model.matrices.system.outputs:
-        rows = plain_rows(model, model.outputs([name]))
-        return ChannelRows(outputs=rows.outputs, forces=rows.forces, slopes=rows.slopes, accelerations=np.array([True]))
+        return replace(plain_rows(model, model.outputs([name])), accelerations=np.array([True]))
     if name in [f"tyre_{wheel}_force_z" for wheel in wheels]:
         return tyre_rows(model, [name.removeprefix("tyre_").removesuffix("_force_z")])
     damper, _, quantity = name.rpartition("_")
@@ -115,15 +123,14 @@ def _damper_row(model: PoleModel, index: int, quantity: str, loads: LoadRows) ->
         return rows
     more = _load_row(model, loads.only([stop]))
     first, second = rows.outputs, more.outputs
-    return ChannelRows(
+    return replace(
+        more,
         outputs=Outputs(
             poles=first.poles + second.poles,
             height=first.height + second.height,
             velocity=first.velocity + second.velocity,
         ),
         forces=rows.forces + more.forces,
-        slopes=rows.slopes + more.slopes,
-        accelerations=rows.accelerations,
     )
 
 
@@ -136,5 +143,6 @@ def _load_row(model: PoleModel, loads: LoadRows) -> ChannelRows:
         outputs=load_outputs(model, loads),
         forces=-np.hstack([-of_dampers, -groups, direct_laws(model, loads)]),
         slopes=slopes,
+        applied=direct_applied(model, loads),
         accelerations=np.zeros(len(loads.names), dtype=bool),
     )

@@ -15,22 +15,26 @@ ACCURACY = 1e-9
 """Last Newton step over the size of a pole."""
 
 
-def strongest(model: PoleModel, damping: Vector, row: Complex, plates: Complex, frequency: float) -> complex:
-    """Return the pole with the largest part of the response of an output to the plates near a frequency [rad/s].
+def strongest(model: PoleModel, damping: Vector, row: Complex, shares: Complex, frequency: float) -> complex:
+    """Return the pole with the largest part of the response of an output to the inputs near a frequency [rad/s].
 
     Args:
         model: pole model.
         damping: damping constants c [N s/m]; (d,).
         row: row of the output over the stored poles; (p,).
-        plates: share of each plate; (w,).
+        shares: amplitude of each plate, or of each applied force of a model with forces; (i,).
         frequency: frequency [Hz].
     """
     matrix, effects, rows = _parts(model)
     values, vectors = np.linalg.eig(matrix - (effects * (damping - model.matrices.viscous)) @ rows)
     s, pairs = 2j * np.pi * frequency, model.pairs
-    residue = (model.height + s * model.velocity) @ plates
-    # The residue of a conjugate pole is the conjugate residue; both poles have the same plates.
-    inputs = np.concatenate([residue, ((model.height + s * model.velocity).conj()[:pairs] @ plates)])
+    # The residue of a conjugate pole is the conjugate residue; both poles have the same inputs.
+    forced = model.applied.shape[1]
+    residue, conjugate = (
+        (model.applied if forced else model.height + s * model.velocity) @ shares,
+        (model.applied.conj() if forced else model.height.conj() + s * model.velocity.conj())[:pairs] @ shares,
+    )
+    inputs = np.concatenate([residue, conjugate])
     half = np.concatenate([0.5 * row[:pairs], row[pairs:], 0.5 * row[:pairs].conj()])
     inputs[pairs : len(residue)] = residue[pairs:].real
     part = (half @ vectors) * np.linalg.solve(vectors, inputs) / (s - values)
@@ -51,9 +55,11 @@ def followed(model: PoleModel, pole: complex, first: Vector, last: Vector) -> co
         first, last: damping constants [N s/m]; (d,) each.
     """
     matrix, effects, rows = _parts(model)
-    poles, viscous = np.diag(matrix), model.matrices.viscous
+    poles = np.diag(matrix)
+    # A damper without friction has its least slope at all levels, within round-off.
+    begin, end = (np.maximum(damping - model.matrices.viscous, 0.0) for damping in (first, last))
     for share in np.arange(1, STEPS + 1) / STEPS:
-        more = (first - viscous) ** (1.0 - share) * (last - viscous) ** share
+        more = begin ** (1.0 - share) * end**share
         for _ in range(NEWTON):
             factor = 1.0 / (pole - poles)
             table = (rows * factor) @ effects * more

@@ -83,6 +83,10 @@ class Polygon(Port):
         """Return phi(w); same shape."""
         return self._sum(motion, self.knots[None], self.slopes[None])
 
+    def slope(self, motion: Vector) -> Vector:
+        """Return d phi/dw; same shape."""
+        return self.slopes[np.searchsorted(self.knots, motion)]
+
     def scaling(self, effect: Vector) -> Vector:
         """See `Port`."""
         if self.steep:
@@ -152,6 +156,16 @@ class Stribeck(Port):
         """Return phi(v); same shape."""
         return self.curve.at(motion) + self.law.limit(motion) * np.clip(motion / self.full, -1.0, 1.0)
 
+    def slope(self, motion: Vector) -> Vector:
+        """Return d phi/dv; same shape."""
+        return self.curve.slope(motion) + self._slope_of_friction(motion)
+
+    def _slope_of_friction(self, velocity: Vector) -> Vector:
+        """Return the slope of L(v) clamp(v/full); same shape."""
+        moving = np.where(velocity == 0.0, self.full, np.abs(velocity))
+        fall = np.minimum(moving / self.full, 1.0) * self.law.fall_at(velocity, self.law) / moving
+        return np.asarray(fall + (moving < self.full) * self.law.limit(velocity) / self.full)
+
     def force(self, sums: Vector, scaling: Vector, sign: float) -> Vector:
         """Solve phi(v) + lambda v = u by Newton's method, between the motions with the limits Fd and Fs; see `Port`."""
         ends = [(sums - each.force(sums, scaling, sign)) / scaling for each in (self.sliding, self.static)]
@@ -165,14 +179,9 @@ class Stribeck(Port):
             if not at[0].size:
                 break
             velocity, factor = v[at], scaling[at]
-            excess, moving = (
-                self.at(velocity) + factor * velocity - sums[at],
-                np.where(velocity == 0.0, self.full, np.abs(velocity)),
-            )
+            excess = self.at(velocity) + factor * velocity - sums[at]
             low[at], high[at] = np.where(excess < 0.0, velocity, low[at]), np.where(excess > 0.0, velocity, high[at])
-            slope = factor + np.minimum(moving / self.full, 1.0) * self.law.fall_at(velocity, self.law) / moving
-            slope += (moving < self.full) * self.law.limit(velocity) / self.full
-            new = velocity - excess / slope
+            new = velocity - excess / (factor + self._slope_of_friction(velocity))
             v[at] = np.where((new > low[at]) & (new < high[at]), new, 0.5 * (low[at] + high[at]))
             wrong = np.abs(excess) > accuracy[at]
             at = (at[0][wrong], at[1][wrong])
@@ -229,23 +238,43 @@ class Play(Port):
         return np.asarray(elements - self.kept * (sums - elements) / reduced)
 
     def _elements(self, sums: Vector, scaling: Vector, sign: float) -> Vector:
-        """Return H of u = H + lambda x in the second of two periods, in which the elements repeat their forces."""
+        """Return H of u = H + lambda x in the second of two periods, in which the elements repeat their forces.
+
+        An element goes from f to clip(f + c, -L, L) over a change c, and over several from f to clip(f + a, low, high)
+        with the sum a. With the three numbers of each block of samples all blocks are passed together.
+        """
         sticking = np.cumsum(self.stiffness[::-1])[::-1][:, None]
         slopes = sticking / (sticking + scaling.T)
         stiffness = -np.diff(slopes, axis=0, append=0.0)
         loading = np.minimum(self.stroke[:, None], self.stroke) @ self.stiffness
         limit = stiffness * (scaling.T * self.stroke[:, None] + loading[:, None])
-        # (samples, elements, points): each step works on neighbouring numbers.
+        count, points = sums.shape[::-1]
+        blocks = max(1, TOGETHER // points)
+        steps = -(-count // blocks)
+        # (steps, blocks, elements, points): each step works on neighbouring numbers. The first change stands apart.
         u = np.ascontiguousarray(sums.T)[:, None]
-        changes = stiffness * np.diff(u, axis=0, prepend=sign * u[-1:])
+        changes = np.zeros((blocks * steps, *limit.shape))
+        changes[1:count] = stiffness * np.diff(u, axis=0)
+        changes = np.ascontiguousarray(np.swapaxes(changes.reshape(blocks, steps, *limit.shape), 0, 1))
+        total, ends = changes.sum(axis=0), np.empty((2, blocks, *limit.shape))
+        ends[0], ends[1] = -limit, limit
+        for change in changes:
+            ends += change
+            np.clip(ends, -limit, limit, out=ends)
         force = np.clip(stiffness * u[0], -limit, limit)
-        result = np.empty((len(u), sums.shape[0]))
-        for turn in range(2):
-            for index, change in enumerate(changes):
-                if turn or index:
-                    force += change
-                    np.clip(force, -limit, limit, out=force)
-                if turn:
-                    force.sum(axis=0, out=result[index])
-            force *= sign
-        return result.T
+        starts = np.empty_like(total)
+        for _ in range(2):
+            for block in range(blocks):
+                starts[block] = force
+                force = np.clip(force + total[block], ends[0, block], ends[1, block])
+            force = np.clip(sign * force + stiffness * (u[0] - sign * u[-1]), -limit, limit)
+        result = np.empty((steps, blocks, points))
+        for index, change in enumerate(changes):
+            starts += change
+            np.clip(starts, -limit, limit, out=starts)
+            starts.sum(axis=1, out=result[index])
+        return np.swapaxes(result, 0, 1).reshape(-1, points)[:count].T
+
+
+TOGETHER = 256
+"""Number of points and blocks of samples that are passed together."""

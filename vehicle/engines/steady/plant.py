@@ -1,8 +1,9 @@
-"""Linear car between its ports, its plates and its outputs, from its poles.
+"""Linear car between its ports, its inputs and its outputs, from its poles.
 
-At the angular frequency w every motion of the car is y = Y0 z - Y p with the plates z and the forces p of the ports,
-which act against their motions. The base rows are damper velocities, then displacements of Jenkins
-groups and of laws over displacement. The base columns are the forces of the same elements.
+At the angular frequency w every motion of the car is y = Y0 z - Y p with the inputs z, its plates or the applied forces
+of a model that has some, and the forces p of the ports, which act against their motions. The base rows are damper
+velocities, then displacements of Jenkins groups and of laws over displacement. The base columns are the forces of the
+same elements.
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ class Responses:
     Attributes:
         forces: to the forces of base columns, as they act along their rows; (rows, columns, m).
         slopes: to the slope velocities of rolling tyres; (rows, w, m), (rows, 0, m) for standing tyres.
-        plates: to the displacements of the plates; (rows, w, m).
+        inputs: to the displacements of the plates, or to the applied forces; (rows, i, m).
     """
 
     forces: Complex
     slopes: Complex
-    plates: Complex
+    inputs: Complex
 
 
 class Plant:
@@ -53,26 +54,28 @@ class Plant:
     def responses(self, speeds: Vector) -> Responses:
         """Return the responses at angular frequencies w [rad/s]; (m,)."""
         model, rows, wheels = self.model, self._rows.outputs, self.model.height.shape[1]
-        columns = np.hstack([model.force, model.scalar_force, model.slope, model.height, model.velocity])
+        columns = np.hstack([model.force, model.scalar_force, model.slope, model.height, model.velocity, model.applied])
         table = _transfer(model, rows.poles, columns, speeds)
         s = 1j * speeds
-        ends = np.cumsum([len(self.moved), model.slope.shape[1], wheels])
-        forces, slopes, height, velocity = np.split(table, ends, axis=1)
+        ends = np.cumsum([len(self.moved), model.slope.shape[1], wheels, wheels])
+        forces, slopes, height, velocity, applied = np.split(table, ends, axis=1)
         forces, slopes = forces + self._rows.forces[:, :, None], slopes + self._rows.slopes[:, :, None]
-        plates = height + s * velocity + rows.height[:, :, None] + s * rows.velocity[:, :, None]
+        inputs = height + s * velocity + rows.height[:, :, None] + s * rows.velocity[:, :, None]
+        if applied.shape[1]:
+            inputs = applied + self._rows.applied[:, :, None]
         # The rows of accelerations are displacements.
         second = np.where(self._rows.accelerations[:, None], s**2, 1.0)[:, None]
-        forces, slopes, plates = second * forces, second * slopes, second * plates
+        forces, slopes, inputs = second * forces, second * slopes, second * inputs
         at = np.flatnonzero(self.moved)
         if at.size:
             # A stiffness k less in the car: its row has w = W - G (p - k w), so w = (1 - G k)^-1 (W - G p).
             inner = np.moveaxis(forces[at][:, at] * self.moved[at][None, :, None], -1, 0)
             inverse = np.moveaxis(np.linalg.inv(np.eye(at.size) - inner), 0, -1)
             gain = np.einsum("rim,ijm->rjm", forces[:, at] * self.moved[at][None, :, None], inverse)
-            forces, slopes, plates = (
-                each + np.einsum("rjm,jcm->rcm", gain, each[at]) for each in (forces, slopes, plates)
+            forces, slopes, inputs = (
+                each + np.einsum("rjm,jcm->rcm", gain, each[at]) for each in (forces, slopes, inputs)
             )
-        return Responses(forces=forces, slopes=slopes, plates=plates)
+        return Responses(forces=forces, slopes=slopes, inputs=inputs)
 
 
 def _transfer(model: PoleModel, rows: Complex, columns: Complex, speeds: Vector) -> Complex:

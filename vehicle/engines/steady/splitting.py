@@ -54,6 +54,7 @@ class PresentLoad:
         plates: dynamic tyre forces without both; (points, w, k).
         rate: velocities z' of the plates; (points, w, samples).
         load: static tyre loads [N]; (w,).
+        least: smallest dF/F0: a tyre that has left its plate; -inf for a small change of the state.
     """
 
     ports: Complex
@@ -62,8 +63,9 @@ class PresentLoad:
     plates: Complex
     rate: Vector
     load: Vector
+    least: float = -1.0
 
-    def at(self, points: Mask) -> PresentLoad:
+    def at(self, points: Mask | Indices) -> PresentLoad:
         """Return some of the points."""
         return PresentLoad(
             ports=self.ports[points],
@@ -72,12 +74,17 @@ class PresentLoad:
             plates=self.plates[points],
             rate=self.rate[points],
             load=self.load,
+            least=self.least,
         )
+
+    def changes(self, forces: Complex, slope: Complex) -> Complex:
+        """Return the dynamic tyre forces dF by the forces p and e; (points, w, k)."""
+        return self.plates - _product(self.tyres, forces) + _product(self.slopes, slope)
 
     def slope_velocity(self, cycle: Cycle, forces: Complex, last: Complex) -> Complex:
         """Return e by the forces p and the last e; (points, w, k)."""
-        change = self.plates - _product(self.tyres, forces) + _product(self.slopes, last)
-        return cycle.amplitudes(np.maximum(cycle.histories(change) / self.load[:, None], -1.0) * self.rate)
+        change = self.changes(forces, last)
+        return cycle.amplitudes(np.maximum(cycle.histories(change) / self.load[:, None], self.least) * self.rate)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -115,6 +122,7 @@ def periodic_forces(
     tolerance: float = 1e-7,
     limit: int = 250,
     ladder: Sequence[tuple[float, float]] = LADDER,
+    start: PeriodicForces | None = None,
 ) -> PeriodicForces:
     """Return the periodic forces of the ports at n points with different cars and drives.
 
@@ -128,13 +136,14 @@ def periodic_forces(
         tolerance: largest |y - x| of a finished point over the largest force of its ports.
         limit: largest number of iterations with one scaling.
         ladder: factors of the scalings, see `LADDER`.
+        start: states at which the iteration begins; by default at rest.
     """
     count, wheels = len(drive), 0 if present is None else len(present.load)
     shape = (count, len(ports), cycle.stored)
     result = PeriodicForces(
-        force=np.zeros(shape),
-        motion=np.zeros(shape),
-        slope=np.zeros((count, wheels, len(cycle.harmonics)), dtype=complex),
+        force=np.zeros(shape) if start is None else start.force.copy(),
+        motion=np.zeros(shape) if start is None else start.motion.copy(),
+        slope=np.zeros((count, wheels, len(cycle.harmonics)), dtype=complex) if start is None else start.slope.copy(),
         ended=np.zeros(count, dtype=bool),
         iterations=np.zeros(count, dtype=np.intp),
     )

@@ -27,6 +27,7 @@ def write_report(
     progress: Callable[[float], None] | None = None,
     targets: Path | str | None = None,
     measure: Sequence[str] = (),
+    levels: str = "",
     notice: Callable[[str], None] | None = None,
     film: Path | str | None = None,
     author: str = "",
@@ -41,6 +42,7 @@ def write_report(
         progress: called with the finished fraction.
         targets: TOML file of figures with limits, or "ride" for the shipped one; the report begins with the verdict.
         measure: further figures by their names in the catalogue (`Run.figure`).
+        levels: motion of the plates, for example "heave", for a chart of FRFs at every level (`Car.levels`).
         notice: called with a line on targets without a run, and the commands that make these runs.
         film: film of two runs side by side, as `film_of_two` writes it, for the page; none by default.
         author, project: names in the head of the page; may be empty.
@@ -73,6 +75,7 @@ def write_report(
         trial=partial(trial, measure=measure),
         targets=figures,
         measure=measure,
+        levels=levels,
         pair=pair,
         author=author,
         project=project,

@@ -18,6 +18,12 @@ ROUND = 1e-6
 """Tolerance [m, kg m2] within which a part that turns with the wheel is a body of revolution."""
 
 
+def _steady(meaning: str) -> Any:
+    """Declare a steady acceleration, 0 by default."""
+    grip = "1.5 g, the grip of racing tyres"
+    return quantity("m/s2", f"steady {meaning}", at_least=-15.0, at_most=15.0, why=grip, default=0.0)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Driving(Validated):
     """Constant speed straight ahead with freely rolling wheels; at speed 0 the tyres are at rest, as on a rig.
@@ -49,22 +55,8 @@ class Driving(Validated):
     hold_damping: float = quantity(
         "-", "damping ratio of the car on the soft springs that keep its course", at_least=0.1, at_most=2.0, default=0.7
     )
-    acceleration: float = quantity(
-        "m/s2",
-        "steady acceleration along the road, forwards positive (ISO 8855), braking negative",
-        at_least=-15.0,
-        at_most=15.0,
-        why="1.5 g, the grip of racing tyres",
-        default=0.0,
-    )
-    lateral: float = quantity(
-        "m/s2",
-        "steady lateral acceleration, to the left positive (ISO 8855), as in a bend to the left",
-        at_least=-15.0,
-        at_most=15.0,
-        why="1.5 g, the grip of racing tyres",
-        default=0.0,
-    )
+    acceleration: float = _steady("acceleration along the road, forwards positive (ISO 8855), braking negative")
+    lateral: float = _steady("lateral acceleration, to the left positive (ISO 8855), as in a bend to the left")
     brake_balance: float = quantity(
         "-",
         "share of the foremost axle in the brake force; the wheels of an axle brake alike",

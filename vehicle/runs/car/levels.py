@@ -1,10 +1,8 @@
-"""Periodic states of a car on its plates over frequency and level: FRFs at every level, and where the dampers slip."""
+"""Periodic states of a car on its plates or a force: FRFs at every level, and where the dampers slip."""
 
 from __future__ import annotations
 
-import cmath
-import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -13,19 +11,20 @@ import numpy.typing as npt
 
 from vehicle.arrays import Mask, Vector
 from vehicle.digits import beside_limit, number
+from vehicle.drawing.rendering.level_plot import peaks_of
+from vehicle.engines.linear.load_rows import load_rows
+from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.validity import LARGEST_ANGLE
 from vehicle.engines.steady.car_ports import car_ports
 from vehicle.engines.steady.equivalent_mode import ACCURACY, followed, strongest
 from vehicle.engines.steady.level_states import LevelStates, level_states
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.channel_words import channels_named
-from vehicle.names import axle_and_side, channel_units
+from vehicle.names import channel_units
+from vehicle.runs.car.level_inputs import LevelInput, Shares, force_input, plate_input
 
-Plates = str | Mapping[str, complex]
-"""Motion of the plates: a name, shares as text, or the share of each wheel as a complex number."""
-
-MOTIONS = ("heave", "pitch", "roll", "warp")
-"""Names of motions of all plates."""
+FREQUENCY, LEVEL = np.geomspace(1.0, 30.0, 100), np.geomspace(1e-5, 1e-2, 24)
+"""Frequencies [Hz] and amplitudes of plates [m] of reports and figures, the defaults of `vehicle levels`."""
 
 LOWEST_ROLLING = 1.0
 """Minimum frequency for rolling tyres [Hz]: at lower frequencies a rolling car may amplify its motion."""
@@ -43,19 +42,19 @@ has about 1 % of the mean square."""
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LevelMap(LevelStates):
-    """Periodic states of a car whose plates move as a sine; the arrays of `LevelStates`, and what they belong to.
+    """Periodic states of a car on a sinusoidal input; the arrays of `LevelStates`, and what they belong to.
 
     Attributes:
         car: the car.
-        plates: share of the level of each plate, with its phase.
+        driven: the input.
         frequency: frequencies [Hz]; (f,).
-        level: amplitudes of the plates with the share 1 [m]; (l,).
+        level: amplitudes of the plates or forces with the share 1, in the unit of the input; (l,).
         channels: names of the channels.
         dampers: names of the dampers.
     """
 
     car: Any
-    plates: dict[str, complex]
+    driven: LevelInput
     frequency: Vector
     level: Vector
     channels: tuple[str, ...]
@@ -81,7 +80,7 @@ class LevelMap(LevelStates):
 
     @property
     def unsticking(self) -> Vector:
-        """Return the level at which each damper begins to slip [m]; NaN outside the levels; (d, f).
+        """Return the level at which each damper begins to slip; NaN outside the levels; (d, f).
 
         The first damper of a frequency has it in closed form. While others slip already, it is where the force of the
         stuck damper, continued from the last two levels, reaches its friction limit.
@@ -115,6 +114,19 @@ class LevelMap(LevelStates):
                 result[:, column] = _vertex(self.frequency[inside[top - 1 : top + 2]], values[top - 1 : top + 2])
         return result[0], result[1]
 
+    def falling_peak(self, low: float = 0.0, high: float = np.inf) -> float:
+        """Return the frequency of the peak of the first channel that falls most from the lowest to the highest level.
+
+        Args:
+            low, high: band of the peak at the lowest level [Hz].
+        """
+        frequency, size = self.frequency, np.nan_to_num(np.abs(self.frf[0]), nan=1e-30)
+        inside = (frequency >= low) & (frequency <= high)
+        if chosen := [index for index in peaks_of(size[:, 0]) if inside[index]]:
+            fall = size[:, 0] / size[:, -1]
+            return float(frequency[max(chosen, key=lambda index: float(fall[index]))])
+        return float(frequency[int(np.argmax(np.where(inside, size[:, 0], -1.0)))])
+
     def mode(self, near: float, channel: str | None = None) -> tuple[Vector, Vector]:
         """Return frequency [Hz] and damping ratio [-] of a mode at each level; (l,) each.
 
@@ -131,7 +143,7 @@ class LevelMap(LevelStates):
         """
         if any(damper.law.friction_law == "presliding" for damper in self.car.vehicle.composition.dampers):
             raise ConfigurationError("mode: a damper with presliding friction is a spring too, not a viscous damper")
-        model, shares = self.car.poles, np.array(list(self.plates.values()))
+        model, shares = driven_poles(self.car, self.driven), self.driven.at(np.array([near]))[0]
         row = model.outputs([channel or self.channels[0]]).poles[0]
         damping = self._damping(0, near)
         pole, result = strongest(model, damping, row, shares, near), np.full((2, len(self.level)), np.nan)
@@ -163,7 +175,7 @@ class LevelMap(LevelStates):
                 f"a part rotates by up to {angle} deg (at {points} points by more than {limit} deg, the limit of the "
                 "linear geometry): check such points with Car.run and MuJoCo"
             )
-        lifting = int(np.sum(self.load < 0.0)) if set(self.plates) - self.car.matrices.one_sided else 0
+        lifting = int(np.sum(self.load < 0.0)) if {*self.car.vehicle.wheels} - self.car.matrices.one_sided else 0
         if lifting:
             texts.append(
                 f"at {lifting} points a tyre would pull in place of lifting off; set one_sided = true for the tyres"
@@ -178,7 +190,9 @@ class LevelMap(LevelStates):
 
     def at(self, frequency: float) -> LevelMap:
         """Return the states at one frequency [Hz] and the same levels, computed there."""
-        return car_levels(self.car, plates=self.plates, frequency=[frequency], level=self.level, channels=self.channels)
+        return level_map(
+            self.car, self.driven, frequency=np.array([frequency]), level=self.level, channels=self.channels
+        )
 
 
 def crossing(level: Vector, effort: Vector) -> float:
@@ -209,54 +223,94 @@ def _vertex(frequency: Vector, values: Vector) -> tuple[float, float]:
 def car_levels(
     car: Any,
     *,
-    plates: Plates = "heave",
+    plates: Shares = "heave",
+    force: Shares | None = None,
+    axle_delay: float | None = None,
     frequency: npt.ArrayLike,
     level: npt.ArrayLike,
+    level_unit: str | None = None,
     channels: str | Sequence[str] = "seat rail z",
     samples: int = 128,
     progress: Callable[[float], None] | None = None,
 ) -> LevelMap:
-    """Return the periodic states of a car whose plates move as a sine; see `Car.levels`."""
+    """Return the periodic states of a car on a sinusoidal input; see `Car.levels`."""
+    if force is None:
+        driven = plate_input(plates, car.vehicle, level_unit or "m", axle_delay)
+    elif plates != "heave" or axle_delay is not None:
+        raise ConfigurationError("force: acts in place of the plates; leave out plates and axle_delay")
+    else:
+        driven = force_input(force, car.vehicle.composition.forces)
+        if level_unit not in (None, driven.unit):
+            raise ConfigurationError(f"level: unit {level_unit!r}, must be {driven.unit!r} for this force")
     names = channels_named(channels, (*car.vehicle.channels, *car.vehicle.load_channels))
-    lines, levels = _ascending("frequency", frequency, "Hz"), _ascending("level", level, "m")
+    lines, levels = ascending("frequency", frequency, "Hz"), ascending("level", level, driven.unit)
     if len(lines) * len(levels) > MOST:
         raise ConfigurationError(f"levels: {len(lines) * len(levels)} points, must be at most {MOST}; take fewer")
     if samples % 2 or not LEAST_SAMPLES <= samples <= MOST_SAMPLES:
         raise ConfigurationError(f"samples {samples}: must be an even number from {LEAST_SAMPLES} to {MOST_SAMPLES}")
-    shares = plate_shares(plates, car.vehicle.wheels)
     if car.matrices.slope.size and lines[0] < LOWEST_ROLLING:
         raise ConfigurationError(
             f"frequency {lines[0]:g} Hz: must be at least {LOWEST_ROLLING:g} Hz for rolling tyres, which may amplify "
             "slower motion; raise it, or set driving.speed=0"
         )
-    dampers = car.vehicle.composition.dampers
     car.check("reduced")
-    if not car_ports(car.poles, [damper.law for damper in dampers]).ports:
-        raise ConfigurationError("levels: the car is linear, so its FRFs hold at every level; take Car.matrix_frf")
+    require_nonlinear(car, driven)
+    return level_map(car, driven, frequency=lines, level=levels, channels=names, samples=samples, progress=progress)
+
+
+def require_nonlinear(car: Any, driven: LevelInput) -> None:
+    """Check that a car has ports for all its laws, and at least one.
+
+    Raises:
+        ConfigurationError: see `car_ports`; the car is linear.
+    """
+    laws = [damper.law for damper in car.vehicle.composition.dampers]
+    if not car_ports(car.poles.without_forces() if driven.forces else car.poles, laws).ports:
+        way = "Car.force_frf" if driven.forces else "Car.matrix_frf"
+        raise ConfigurationError(f"levels: the car is linear, so its FRFs hold at every level; take {way}")
+
+
+def driven_poles(car: Any, driven: LevelInput) -> PoleModel:
+    """Return the poles of a car with its plates or with the forces of an input as inputs."""
+    return pole_model(car.matrices.with_unit_forces(driven.forces)) if driven.forces else car.poles
+
+
+def level_map(
+    car: Any,
+    driven: LevelInput,
+    *,
+    frequency: Vector,
+    level: Vector,
+    channels: tuple[str, ...],
+    samples: int = 128,
+    progress: Callable[[float], None] | None = None,
+) -> LevelMap:
+    """Return the periodic states of a car; frequencies and levels ascend, and all channels are names of channels."""
+    model, dampers = driven_poles(car, driven), car.vehicle.composition.dampers
     states = level_states(
-        car.poles,
+        model,
         [damper.law for damper in dampers],
         tyre_load=car.static.tyre_load,
-        loads=car.load_rows,
-        plates=np.array(list(shares.values())),
-        frequency=lines,
-        level=levels,
-        channels=names,
+        loads=load_rows(car.model, model.matrices) if driven.forces else car.load_rows,
+        shares=driven.at(frequency),
+        frequency=frequency,
+        level=level,
+        channels=channels,
         samples=samples,
         progress=progress,
     )
     return LevelMap(
         **{each.name: getattr(states, each.name) for each in fields(states)},
         car=car,
-        plates=shares,
-        frequency=lines,
-        level=levels,
-        channels=names,
+        driven=driven,
+        frequency=frequency,
+        level=level,
+        channels=channels,
         dampers=tuple(damper.name for damper in dampers),
     )
 
 
-def _ascending(name: str, values: npt.ArrayLike, unit: str) -> Vector:
+def ascending(name: str, values: npt.ArrayLike, unit: str) -> Vector:
     """Return numbers above zero in ascending order; (n,)."""
     numbers = np.atleast_1d(np.asarray(values, dtype=float))
     if numbers.ndim != 1 or not numbers.size or not (np.isfinite(numbers) & (numbers > 0.0)).all():
@@ -264,54 +318,3 @@ def _ascending(name: str, values: npt.ArrayLike, unit: str) -> Vector:
     if (np.diff(numbers) <= 0.0).any():
         raise ConfigurationError(f"{name}: must ascend, each {name} once")
     return numbers
-
-
-def plate_shares(plates: Plates, wheels: Sequence[str]) -> dict[str, complex]:
-    """Return the share of each plate in the level, in the order of the wheels.
-
-    Args:
-        plates: heave, pitch (front axle up, others down), roll (left up, right down), warp (both), a wheel, shares with
-            their phases in degrees as "fl=1,fr=1@90", or a dictionary of complex numbers.
-        wheels: names of the wheels.
-
-    Raises:
-        ConfigurationError: another word or wheel, no motion, or pitch or warp of a single axle.
-    """
-    if isinstance(plates, str):
-        plates = _named_shares(plates.strip(), wheels)
-    if unknown := [wheel for wheel in plates if wheel not in wheels]:
-        raise ConfigurationError(f"plates: the car has no wheel {unknown[0]!r}; choose from {', '.join(wheels)}")
-    shares = {wheel: complex(plates.get(wheel, 0.0)) for wheel in wheels}
-    if not any(shares.values()) or not all(map(cmath.isfinite, shares.values())):
-        raise ConfigurationError("plates: must have finite shares, at least one of them not 0")
-    return shares
-
-
-SHARE = re.compile(r"\s*(\w+)\s*=\s*([-+.\deE]+)\s*(?:@\s*([-+.\deE]+)\s*)?")
-"""Share of a plate, with its phase [deg]."""
-
-
-def _named_shares(text: str, wheels: Sequence[str]) -> dict[str, complex]:
-    """Return the shares of a text."""
-    axles = list(dict.fromkeys(axle_and_side(wheel)[0] for wheel in wheels))
-    if text in MOTIONS:
-        if text in ("pitch", "warp") and len(axles) < 2:
-            raise ConfigurationError(f"plates {text}: the car has plates under one axle only; choose heave or roll")
-        signs = {wheel: (1.0 if axle == axles[0] else -1.0, 1.0 if side == "left" else -1.0)
-                 for wheel in wheels for axle, side in [axle_and_side(wheel)]}  # fmt: skip
-        factors = {"heave": (0, 0), "pitch": (1, 0), "roll": (0, 1), "warp": (1, 1)}[text]
-        return {wheel: complex(by_axle ** factors[0] * by_side ** factors[1])
-                for wheel, (by_axle, by_side) in signs.items()}  # fmt: skip
-    if text in wheels:
-        return {text: 1.0 + 0.0j}
-    shares = {}
-    for part in text.split(","):
-        try:
-            wheel, size, phase = SHARE.fullmatch(part).groups()  # type: ignore[union-attr]
-            shares[wheel] = cmath.rect(float(size), np.radians(float(phase or 0.0)))
-        except (AttributeError, ValueError):
-            raise ConfigurationError(
-                f"plates {text!r}: must be {', '.join(MOTIONS)}, a wheel ({', '.join(wheels)}), or shares with phases "
-                "in degrees, for example fl=1,fr=1@90"
-            ) from None
-    return shares

@@ -13,6 +13,7 @@ from vehicle.engines.simulation.stepping import Progress, simulate
 from vehicle.errors import ConfigurationError
 from vehicle.names import ENGINES
 from vehicle.runs.car.grip_notice import grip_notice
+from vehicle.runs.car.record_rate_notice import record_rate_notice
 from vehicle.runs.car.run_up_notice import run_up_notice
 from vehicle.signals.excitation.signal import Signal
 
@@ -76,7 +77,7 @@ def simulated_run(
             seated=car.vehicle.seated,
         )
         require_finite(recording)
-        recording = _with_forces(recording, car, names, shown)
+        recording = _noted(recording, car, names, shown, channels)
         if engine == "reduced" or recording.statistics.within_validity:
             recording = recording if stated else with_notices(recording, [NOT_COMPUTED])
             if engine == "auto":
@@ -87,7 +88,7 @@ def simulated_run(
     wanted_step, used_step = car.vehicle.solver.timestep, stepped.vehicle.solver.step
     recording = simulate(stepped.model, signal, progress=progress, requested=more)
     require_finite(recording)
-    recording = _with_forces(recording, car, names, shown)
+    recording = _noted(recording, car, names, shown, channels)
     if wanted_step is not None and used_step < wanted_step:
         said = (
             f"the time step is {used_step:g} s, because the {wanted_step:g} s of the vehicle file are too long "
@@ -99,12 +100,13 @@ def simulated_run(
     return stepped, recording, reason
 
 
-def _with_forces(recording: Recording, car: Any, names: Sequence[str], shown: Mapping[str, str]) -> Recording:
-    """Return a recording with the notices on the forces of its car and their histories, in the order of `names`."""
+def _noted(
+    recording: Recording, car: Any, names: Sequence[str], shown: Mapping[str, str], chosen: Sequence[str] | None
+) -> Recording:
+    """Return a recording with notices on forces and chosen channels, and the histories of forces, as in `names`."""
     composition = car.vehicle.composition
-    recording = with_notices(
-        recording, [*force_notices(composition.forces), *run_up_notice(car), *grip_notice(car, recording.channels)]
-    )
+    notices = [*force_notices(composition.forces), *run_up_notice(car), *grip_notice(car, recording.channels)]
+    recording = with_notices(recording, [*notices, *record_rate_notice(recording, chosen or ())])
     if not shown:
         return recording
     channels = {**recording.channels, **force_histories(composition, shown, recording.time)}

@@ -6,6 +6,7 @@ A figure is added here alone. Sweeps, searches, targets, bench, report, page wit
 
 from vehicle.runs.figures.comfort_figures import COMFORT_FIGURES
 from vehicle.runs.figures.figure import Figure
+from vehicle.runs.figures.level_figures import LEVEL_FIGURES
 from vehicle.runs.figures.reductions import (
     DOSE,
     FIRST_SLIP,
@@ -103,5 +104,5 @@ FIGURES: dict[str, Figure] = COMFORT_FIGURES | {
         words="first slip", meaning="time at which the first damper slips, of the whole run [s]",
         unit="s", reads=VELOCITIES, reduces=FIRST_SLIP, better="", takes=("wheels",), of_car="damper",
     ),
-} | ORDER_FIGURES | MOTION_FIGURES  # fmt: skip
+} | ORDER_FIGURES | MOTION_FIGURES | LEVEL_FIGURES  # fmt: skip
 """Name of each figure to the figure."""

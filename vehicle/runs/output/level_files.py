@@ -12,9 +12,9 @@ import numpy as np
 
 from vehicle.arrays import Vector
 from vehicle.digits import aligned, number
-from vehicle.drawing.rendering.level_plot import LevelPicture, peaks_of, plot_level_damping, plot_level_map
-from vehicle.names import channel_words, side_of, wheel_words
-from vehicle.runs.car.levels import MOTIONS, LevelMap
+from vehicle.drawing.rendering.level_plot import LevelPicture, plot_level_damping, plot_level_map
+from vehicle.names import channel_words, side_of
+from vehicle.runs.car.levels import LevelMap
 from vehicle.runs.output.folder import output_folder, write_files, write_json
 from vehicle.signals.formats.csv_table import table_text
 
@@ -34,25 +34,16 @@ class LevelReport:
 
     Attributes:
         states: the map.
-        plates: motion of the plates by its name or shares.
         band: band of the peak [Hz]; by default around the peak at the lowest level that falls most.
     """
 
     states: LevelMap
-    plates: str
     band: tuple[float, float] | None = None
 
     @cached_property
     def near(self) -> float:
-        """Return the frequency of the peak at the lowest level that falls most up to the highest, in the band [Hz]."""
-        low, high = self.band or (0.0, np.inf)
-        frequency, size = self.states.frequency, np.nan_to_num(np.abs(self.states.frf[0]), nan=1e-30)
-        inside = (frequency >= low) & (frequency <= high)
-        fall = np.where(inside, size[:, 0] / size[:, -1], -1.0)
-        summit = peaks_of(size[:, 0])
-        if chosen := [index for index in summit if inside[index]]:
-            return float(frequency[max(chosen, key=lambda index: float(fall[index]))])
-        return float(frequency[int(np.argmax(np.where(inside, size[:, 0], -1.0)))])
+        """Return the frequency of the peak, see `LevelMap.falling_peak` [Hz]."""
+        return self.states.falling_peak(*(self.band or (0.0, np.inf)))
 
     @property
     def around(self) -> tuple[float, float]:
@@ -82,6 +73,11 @@ class LevelReport:
         """Return the unit of the first channel."""
         return self.states.units[self.states.channels[0]]
 
+    @property
+    def per_level(self) -> str:
+        """Return the unit of the FRF of the first channel."""
+        return f"({self.unit})/{in_brackets(self.states.driven.unit)}"
+
     def words(self, damper: str) -> str:
         """Return a damper by its position: "rear left damper"."""
         position = side_of(damper.removeprefix("damper_"), self.states.car.vehicle.wheels)
@@ -89,8 +85,8 @@ class LevelReport:
 
     @cached_property
     def lines(self) -> dict[str, Vector]:
-        """Return the level at which each damper, or the first of an axle, begins to slip [mm]; (f,) each."""
-        slips = 1e3 * self.states.unsticking
+        """Return the shown level at which each damper, or the first of an axle, begins to slip; (f,) each."""
+        slips = self.states.driven.shown[0] * self.states.unsticking
         sliding = {name: line for name, line in zip(self.states.dampers, slips, strict=True) if np.isfinite(line).any()}
         if len(slips) <= SEVERAL:
             return {f"{self.words(name)} begins to slip": line for name, line in sliding.items()}
@@ -100,10 +96,11 @@ class LevelReport:
         return {f"{axle}: the first damper begins to slip": np.fmin.reduce(lines) for axle, lines in axles.items()}
 
     def first_slip(self) -> dict[str, tuple[float, float]]:
-        """Return the lowest level at which each damper begins to slip [m], and its frequency [Hz], by damper."""
+        """Return the lowest shown level at which each damper begins to slip, and its frequency [Hz], by damper."""
         slips = {name: line for name, line in zip(self.states.dampers, self.states.unsticking, strict=True)
                  if np.isfinite(line).any()}  # fmt: skip
-        return {name: (float(np.nanmin(line)), float(self.states.frequency[np.nanargmin(line)]))
+        factor = self.states.driven.shown[0]
+        return {name: (factor * float(np.nanmin(line)), float(self.states.frequency[np.nanargmin(line)]))
                 for name, line in slips.items()}  # fmt: skip
 
     def damping(self) -> dict[str, Vector]:
@@ -117,11 +114,14 @@ class LevelReport:
         """Return the data of the pictures of a channel."""
         states, name = self.states, self.states.channels[channel]
         unit = states.units[name].replace("m/s2", "m/s²")
+        per = in_brackets(states.driven.unit).replace("m/s2", "m/s²")
         return LevelPicture(
             frequency=states.frequency,
-            level=1e3 * states.level,
+            level=self.shown_levels,
+            amplitude=states.driven.amplitude,
             size=np.abs(states.frf[channel]),
-            label=f"{channel_words(name)}, first harmonic / plate [({unit})/m]",
+            label=f"{channel_words(name)}, first harmonic / {'force' if states.driven.forces else 'plate'} "
+            f"[({unit})/{per}]",
             slipping=self.lines,
             outside=states.outside,
         )
@@ -141,43 +141,49 @@ class LevelReport:
         return f"no other periodic state: {f'proven {where}' if proven else 'not proven'}"
 
     @property
-    def motion(self) -> str:
-        """Return the motion of the plates in words."""
-        wheels = self.states.car.vehicle.wheels
-        if self.plates in MOTIONS:
-            return f"plates in {self.plates}"
-        return f"plate of the {wheel_words(self.plates, wheels)}" if self.plates in wheels else f"plates {self.plates}"
+    def shown_levels(self) -> Vector:
+        """Return the levels for a reader, in mm where they are displacements; (l,)."""
+        return np.asarray(self.states.driven.shown[0] * self.states.level)
+
+
+def in_brackets(unit: str) -> str:
+    """Return a unit as a denominator, in brackets if it is a quotient or a product."""
+    return unit if unit.isalpha() else f"({unit})"
 
 
 def chart_text(states: LevelMap, caption: str) -> str:
     """Return the table of all points as CSV text; points without a result have empty cells."""
-    heads = ["frequency [Hz]", "level [mm]", "ended"]
+    factor, shown = states.driven.shown
+    per = in_brackets(states.driven.unit)
+    heads = ["frequency [Hz]", f"level [{shown}]", "ended"]
     columns = []
     for index, name in enumerate(states.channels):
         unit = states.units[name]
-        heads += [f"{name} FRF [({unit})/m]", f"{name} phase [deg]", f"{name} RMS [{unit}]", f"{name} peak [{unit}]",
-                  f"{name} distortion [%]"]  # fmt: skip
+        heads += [f"{name} FRF [({unit})/{per}]", f"{name} phase [deg]", f"{name} RMS [{unit}]",
+                  f"{name} peak [{unit}]", f"{name} distortion [%]"]  # fmt: skip
         columns += [np.abs(states.frf[index]), np.degrees(np.angle(states.frf[index])), states.rms[index],
                     states.peak[index], 100.0 * states.distortion[index]]  # fmt: skip
     for index, name in enumerate(states.dampers):
         heads += [f"{name} slip share [%]", f"{name} energy per cycle [J]", f"{name} damping constant [N s/m]"]
         columns += [100.0 * states.slip[index], states.energy[index], states.equivalent[index]]
     rows = [
-        [frequency, 1e3 * level, int(states.ended[at, row]), *(_cell(column[at, row]) for column in columns)]
+        [frequency, factor * level, int(states.ended[at, row]), *(empty_or(column[at, row]) for column in columns)]
         for at, frequency in enumerate(states.frequency.tolist())
         for row, level in enumerate(states.level.tolist())
     ]
     return table_text([heads, *rows], [caption], digits=7)
 
 
-def _cell(value: float) -> float | str:
+def empty_or(value: float) -> float | str:
+    """Return a number for a table, empty for NaN."""
     return float(value) if np.isfinite(value) else ""
 
 
 def slip_text(states: LevelMap, caption: str) -> str:
     """Return the table of the levels at which the dampers begin to slip as CSV text."""
-    heads = ["frequency [Hz]", *(f"{name} slips from [mm]" for name in states.dampers)]
-    rows = [[at, *map(_cell, 1e3 * values)] for at, values in zip(states.frequency.tolist(), states.unsticking.T,
+    factor, shown = states.driven.shown
+    heads = ["frequency [Hz]", *(f"{name} slips from [{shown}]" for name in states.dampers)]
+    rows = [[at, *map(empty_or, factor * values)] for at, values in zip(states.frequency.tolist(), states.unsticking.T,
                                                                   strict=True)]  # fmt: skip
     return table_text([heads, *rows], [caption], digits=7)
 
@@ -190,27 +196,28 @@ def cut_name(frequency: float) -> str:
 def summary_of(report: LevelReport, files: Sequence[str]) -> dict[str, Any]:
     """Return the content of summary.json."""
     states = report.states
-    (at, height), (natural, ratio) = report.peaks, report.mode
+    (at, height), (natural, ratio), levels = report.peaks, report.mode, report.shown_levels.tolist()
     return {
         "car": states.car.vehicle.name,
         "overrides": list(states.car.overrides),
-        "plates": report.plates,
-        "shares": {name: [share.real, share.imag] for name, share in states.plates.items()},
+        "input": states.driven.words,
+        "shares": {name: [share.real, share.imag] for name, share in states.driven.shares.items()},
         "frequency_hz": states.frequency.tolist(),
-        "level_mm": (1e3 * states.level).tolist(),
+        "level_unit": states.driven.shown[1],
+        "level": levels,
         "channels": list(states.channels),
         "points": int(states.ended.size),
         "without_result": int(np.sum(~states.ended)),
         "iterations": {"mean": float(states.iterations.mean()), "largest": int(states.iterations.max())},
         "only_one_state_proven": states.unique.tolist(),
         "first_slip": {
-            name: {"level_mm": 1e3 * level, "frequency_hz": at} for name, (level, at) in report.first_slip().items()
+            name: {"level": level, "frequency_hz": at} for name, (level, at) in report.first_slip().items()
         },
         "band_hz": list(report.around),
         "peak": [
-            {"level_mm": 1e3 * level, "frequency_hz": _number(f), "frf": _number(value), "mode_hz": _number(mode),
+            {"level": level, "frequency_hz": _number(f), "frf": _number(value), "mode_hz": _number(mode),
              "damping_ratio": _number(share)}
-            for level, f, value, mode, share in zip(states.level.tolist(), at, height, natural, ratio, strict=True)
+            for level, f, value, mode, share in zip(levels, at, height, natural, ratio, strict=True)
         ],
         "notices": states.notices,
         "files": list(files),
@@ -241,7 +248,7 @@ def write_levels(
         protect: input files.
     """
     states = report.states
-    title = f"{states.car.vehicle.name}, {report.motion}"
+    title = f"{states.car.vehicle.name}, {states.driven.words}"
     caption = (
         f"periodic states, first harmonic; {int(np.sum(states.ended))} of {states.ended.size} points; {report.proof()}"
     )
@@ -252,12 +259,12 @@ def write_levels(
     }
     if figures and np.isfinite(states.frf[0]).any():
         for index, name in enumerate(states.channels):
-            file = "levels.svg" if not index else f"levels_{name}.svg"
+            file = "levels.png" if not index else f"levels_{name}.png"
             contents[file] = partial(
                 plot_level_map, data=report.picture(index), rows=report.rows, title=title, caption=caption
             )
         if len(states.level) > 1 and len(states.frequency) > 2:
-            contents["damping.svg"] = partial(_draw_damping, report=report, title=title)
+            contents["damping.png"] = partial(_draw_damping, report=report, title=title)
     files = [*contents, "summary.json"]
     with output_folder(folder, force=force, protect=protect) as work:
         write_files(work, contents)
@@ -279,25 +286,40 @@ def _draw_damping(path: Path, report: LevelReport, title: str) -> None:
 def printed(report: LevelReport, folder: Path | None, files: Sequence[str]) -> str:
     """Return the printed summary."""
     states = report.states
-    left = int(np.sum(~states.ended))
+    left, shown = int(np.sum(~states.ended)), states.driven.shown[1]
     lines = [
-        f"{states.car.vehicle.name}, {report.motion}; {_range('frequencies', states.frequency, 'Hz')}, "
-        f"{_range('levels', 1e3 * states.level, 'mm')}",
+        f"{states.car.vehicle.name}, {states.driven.words}; {_range('frequencies', states.frequency, 'Hz')}, "
+        f"{_range('levels', report.shown_levels, shown)}",
         f"results: {states.ended.size - left} of {states.ended.size} points, {number(states.iterations.mean(), 2)} "
         f"iterations each; {report.proof()}",
     ]
-    for name, (level, at) in report.first_slip().items():
-        lines.append(f"{report.words(name)}: slips first at {number(at)} Hz, from {number(1e3 * level)} mm on")
-    (frequency, height), (natural, ratio) = report.peaks, report.mode
-    heads = ("level [mm]", f"peak [({report.unit})/m]", "at [Hz]", "mode [Hz]", "damping [%]")
-    table = [
-        [number(1e3 * states.level[row]), *(number(_number(value)) for value in
-         (height[row], frequency[row], natural[row], 100.0 * ratio[row]))]
-        for row in report.rows
-    ]  # fmt: skip
+    heads, table = peak_table(report)
+    lines += slip_lines(report)
     lines += [f"{channel_words(states.channels[0])}, {number(report.around[0])} to {number(report.around[1])} Hz:"]
     lines += aligned([heads, *table], left=0)
     return "\n".join([*lines, *([f"files: {folder}: {', '.join(files)}"] if folder else [])])
+
+
+def slip_lines(report: LevelReport) -> list[str]:
+    """Return the first slip of each damper in words."""
+    return [
+        f"{report.words(name)}: slips first at {number(at)} Hz, from {number(level)} {report.states.driven.shown[1]} on"
+        for name, (level, at) in report.first_slip().items()
+    ]
+
+
+def peak_table(report: LevelReport) -> tuple[tuple[str, ...], list[list[str]]]:
+    """Return heads and rows of the peak and its mode at the drawn levels."""
+    (frequency, height), (natural, ratio) = report.peaks, report.mode
+    heads = (
+        f"level [{report.states.driven.shown[1]}]", f"peak [{report.per_level}]", "at [Hz]", "mode [Hz]", "damping [%]"
+    )  # fmt: skip
+    rows = [
+        [number(report.shown_levels[row]), *(number(_number(value)) for value in
+         (height[row], frequency[row], natural[row], 100.0 * ratio[row]))]
+        for row in report.rows
+    ]  # fmt: skip
+    return heads, rows
 
 
 def _range(name: str, values: Vector, unit: str) -> str:
@@ -310,10 +332,10 @@ def _range(name: str, values: Vector, unit: str) -> str:
 def printed_cut(report: LevelReport, cut: LevelMap) -> str:
     """Return the printed table of a cut at one frequency."""
     unit, name = report.unit, cut.channels[0]
-    heads = ["level [mm]", f"FRF [({unit})/m]", f"RMS [{unit}]", f"peak [{unit}]", "distortion [%]",
-             *(f"slip {damper.removeprefix('damper_')} [%]" for damper in cut.dampers)]  # fmt: skip
+    heads = [f"level [{cut.driven.shown[1]}]", f"FRF [{report.per_level}]", f"RMS [{unit}]", f"peak [{unit}]",
+             "distortion [%]", *(f"slip {damper.removeprefix('damper_')} [%]" for damper in cut.dampers)]  # fmt: skip
     table = [
-        [number(1e3 * cut.level[row]), *(number(_number(value)) for value in (
+        [number(report.shown_levels[row]), *(number(_number(value)) for value in (
             abs(cut.frf[0, 0, row]), cut.rms[0, 0, row], cut.peak[0, 0, row], 100.0 * cut.distortion[0, 0, row],
             *(100.0 * cut.slip[:, 0, row])))]
         for row in report.rows

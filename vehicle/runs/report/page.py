@@ -21,6 +21,7 @@ from vehicle.runs.report.comparison_section import MANY, curves_over_each_other,
 from vehicle.runs.report.figures_section import figures_section
 from vehicle.runs.report.film_section import film, film_part
 from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.levels_section import levels_section
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.modes_section import Modes, as_json, car_modes_of, modes_of, moving_modes
 from vehicle.runs.report.run_input import car_title, references
@@ -52,6 +53,7 @@ def report_page(
     trial: Callable[[FinishedRun], Trial],
     targets: Mapping[str, Target] | None = None,
     measure: Sequence[str] = (),
+    levels: str = "",
     pair: Path | None = None,
     author: str = "",
     project: str = "",
@@ -63,6 +65,7 @@ def report_page(
         trial: makes the section for trials of a single run.
         targets: figures with their limits; the report then begins with the verdict on them.
         measure: further figures by their names in the catalogue.
+        levels: motion of the plates for a chart of FRFs at every level; empty for none.
         pair: film of two runs side by side; none by default.
         author, project: names in the head of the page; may be empty.
 
@@ -84,6 +87,8 @@ def report_page(
         parts = _of_one(runs[0], modes[0], tried.content)
     else:
         parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share), pair)
+    if levels:
+        parts.insert(1, ("Every level", "levels", levels_section(levels, runs)))
     if measure:
         parts.insert(1, ("Figures", "figures", figures_section(measure, runs)))
     if targets is not None:
