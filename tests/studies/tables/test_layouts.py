@@ -66,6 +66,12 @@ def test_further_values_of_a_row_are_left_out_by_name(tmp_path):
     assert any("further values 1800" in text for _, text in table.left_out)
 
 
+def test_a_motion_ratio_above_one_is_a_guess(tmp_path):
+    table = read(tmp_path, "spring rate front,20,N/mm\nmotion ratio front,1.1,-\n", name="car.csv")
+    assert table.numbers["wheel_rate_front"] == pytest.approx(1.1**2 * 2e4, rel=1e-12)
+    assert any("spring travel per wheel travel" in text for _, text in table.guessed)
+
+
 OPTIMUM = ("Wheel Center", "CHAS_LowFor", "CHAS_LowAft", "UPRI_LowPnt", "strut top")
 LAYOUTS = {
     "points as columns": "Point," + ",".join(WORDS["plain"]) + "\n" + "\n".join(
