@@ -65,7 +65,8 @@ def stated_axes(remarks: Sequence[str], file: str) -> dict[str, str]:
         text = remark.lower()
         for axis, directions_of in _WORDS.items():
             for match in re.finditer(rf"(?<![a-z])\+?{axis}\+?(?:[- ]axis)?(?: is| points|:|=|,)?(?: positive)?"
-                                     rf"(?: to(?:wards)?)?(?: the)?[ ,]+(?:driver's )?([a-zäöü]+)", text):  # fmt: skip
+                                     rf"(?: to(?:wards)?| nach)?(?: the)?[ ,]+(?:driver's )?([a-zäöü]+)",
+                                     text):  # fmt: skip
                 for direction, terms in directions_of.items():
                     if match[1] in terms.split():
                         enter(axis, direction)

@@ -235,6 +235,9 @@ def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
     """Enter rates, damping and frequencies of an axle."""
     tyre, ratio = table.get("tyre_rate", axle), table.get("motion_ratio", axle)
     damper_ratio = table.get("damper_ratio", axle) or ratio
+    if ratio is not None and ratio > 1.0:
+        table.guess("motion_ratio", axle, f"motion ratio {axle} {ratio:g}: spring travel per wheel travel; write its "
+                    "inverse if it is wheel travel per spring travel")  # fmt: skip
     if tyre is not None:
         table.put(f"tyre_stiffness_{axle}", tyre, ("tyre_rate", axle), ("tyre_rate", ""))
     wheel, why = table.get("wheel_rate", axle), ("wheel_rate", axle)

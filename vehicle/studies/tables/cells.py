@@ -16,6 +16,10 @@ NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
 _POINTED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+,\d+")
 """Number with points between thousands and a decimal comma."""
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
+_POINTS = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+")
+"""Number with points between thousands where the comma is decimal: "1.280"."""
+WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%°\"(/].*)")
+"""Number and unit in one cell: "1250 kg"."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -29,27 +33,34 @@ class Row:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CellTable:
-    """Rows of a file, and the meaning of a comma in its numbers: "decimal", "thousands" or "unknown"."""
+    """Rows of a file, and the meaning of a comma in its numbers: "decimal", "thousands" or "unknown".
+
+    `points` is the meaning of the point in "1.280": "decimal", "thousands" or, beside both, "unknown".
+    """
 
     rows: tuple[Row, ...]
     comma: str
+    points: str = "decimal"
 
     def number(self, row: Row, text: str) -> float | None:
         """Return the number of a cell; None for another text.
 
         Raises:
-            DataError: "1,250" in a file without other numbers that show the meaning of a comma.
+            DataError: "1,250" or "1.250" in a file whose other numbers do not show the meaning of its sign.
         """
         text = text.replace("\u2212", "-").replace("\u00a0", "").strip()
         if _POINTED.fullmatch(text):
             text = text.replace(".", "")
-        if _THOUSANDS.fullmatch(text):
-            if self.comma == "unknown":
-                raise DataError(
-                    f"{row.where}: {text!r} may be a thousand or a decimal number; write it with a decimal point"
-                )
-            if self.comma == "thousands":
-                return float(text.replace(",", ""))
+        is_pointed, is_thousand = _POINTS.fullmatch(text), _THOUSANDS.fullmatch(text)
+        if (is_thousand and self.comma == "unknown") or (is_pointed and self.points == "unknown"):
+            raise DataError(
+                f"{row.where}: {text!r} may be a thousand or a decimal number; write it with a decimal point, and no "
+                "number of the file with a decimal comma"
+            )
+        if is_pointed and self.points == "thousands":
+            return float(text.replace(".", ""))
+        if is_thousand and self.comma == "thousands":
+            return float(text.replace(",", ""))
         return float(text.replace(",", ".")) if NUMBER.fullmatch(text) else None
 
 
@@ -72,9 +83,14 @@ def read_cells(path: Path) -> CellTable:
         ]
     else:
         rows = _text_rows(path)
-    if not any(NUMBER.fullmatch(cell) for row in rows for cell in row.cells):
+    if not any(NUMBER.fullmatch(cell) or WITH_UNIT.fullmatch(cell) for row in rows for cell in row.cells):
         raise DataError(f"{path}: has no cell with a number; save names, values and units as CSV or XLSX")
-    return CellTable(rows=tuple(rows), comma=_comma(rows))
+    numbers = [match[1] if (match := WITH_UNIT.fullmatch(cell)) else cell for row in rows for cell in row.cells]
+    comma = _comma(numbers)
+    # A numeric cell of Excel has a point wherever a text has a comma.
+    is_sheet = any(row.sheet for row in rows)
+    points = "decimal" if comma != "decimal" else "unknown" if is_sheet else _points(numbers)
+    return CellTable(rows=tuple(rows), comma=comma, points=points)
 
 
 def _text_rows(path: Path) -> list[Row]:
@@ -110,10 +126,16 @@ def _blank_cells(line: str) -> list[str]:
     return ([name] if name else []) + terms[first:]
 
 
-def _comma(rows: list[Row]) -> str:
+def _comma(cells: list[str]) -> str:
     """Return what a comma means in the numbers of a table."""
-    numbers = [cell for row in rows for cell in row.cells if NUMBER.fullmatch(cell) or _THOUSANDS.fullmatch(cell)]
+    numbers = [cell for cell in cells if any(form.fullmatch(cell) for form in (NUMBER, _POINTED, _THOUSANDS))]
     commas = [cell for cell in numbers if "," in cell]
     if any(not _THOUSANDS.fullmatch(cell) for cell in commas):
         return "decimal"
     return "thousands" if any("." in cell for cell in numbers) else "unknown"
+
+
+def _points(cells: list[str]) -> str:
+    """Return what the point of "1.280" means in a table with decimal commas."""
+    mixed = any(NUMBER.fullmatch(cell) and "." in cell and not _POINTS.fullmatch(cell) for cell in cells)
+    return "unknown" if mixed else "thousands"

@@ -44,7 +44,8 @@ PLAIN: dict[str, str] = {
     "leermasse": "kerb mass", "car": "vehicle", "fahrzeug": "vehicle", "fahrzeugmasse": "vehicle mass",
     "gesamtmasse": "vehicle mass", "whole": "total", "overall": "total", "stiffness": "rate", "steifigkeit": "rate",
     "federrate": "spring rate", "federsteifigkeit": "spring rate", "radrate": "wheel rate", "constant": "rate",
-    "reifensteifigkeit": "tyre rate", "dämpfung": "damping", "damp": "damping",
+    "reifensteifigkeit": "tyre rate", "reifenfederrate": "tyre rate", "radbezogen": "wheel", "dämpfung": "damping",
+    "damp": "damping",
     "unsprungmass": "unsprung mass", "sprungmass": "sprung mass", "ungefedert": "unsprung", "ungefederte": "unsprung",
     "gefedert": "sprung", "gefederte": "sprung", "radstand": "wheelbase", "spurweite": "track", "spur": "track",
     "trackwidth": "track", "tread": "track", "width": "", "cg": "cog", "com": "cog", "schwerpunkt": "cog",
@@ -58,11 +59,18 @@ PLAIN: dict[str, str] = {
 }  # fmt: skip
 """Word in small letters -> plain words; "" for a word without meaning here."""
 
+OPTIMUM = {
+    "chas_lowfor": "lower arm fore", "chas_lowaft": "lower arm aft", "chas_uppfor": "upper arm fore",
+    "chas_uppaft": "upper arm aft", "upri_lowpnt": "lower ball", "upri_upppnt": "upper ball",
+    "chas_tiepnt": "tie inner", "upri_tiepnt": "tie outer",
+}  # fmt: skip
+"""Names of points in files of OptimumKinematics."""
+
 NOISE = frozenset({
     "hp", "pt", "point", "points", "joint", "location", "loc", "coordinate", "position", "pos", "mount", "mounting",
     "bushing", "bush", "pivot", "attachment", "attach", "the", "of", "at", "on", "to", "in", "a", "an", "and", "for",
     "from", "with", "per", "value", "its", "sub", "fixed", "about", "axis", "around", "der", "die", "das", "am",
-    "im", "des", "mdl", "model", "ground", "coefficient", "design", "nominal", "static",
+    "im", "des", "je", "pro", "mdl", "model", "ground", "coefficient", "design", "nominal", "static",
 })  # fmt: skip
 """Words without effect on the meaning of a name."""
 
@@ -82,6 +90,8 @@ _PAIRS = (
     (("center", "mass"), "cog"), (("center", "gravity"), "cog"), (("cog", "cog"), "cog"), (("bar", "link"), "droplink"),
     (("damper", "damper"), "damper"), (("twist", "beam"), "twistbeam"), (("torsion", "beam"), "twistbeam"),
     (("a", "arm"), "arm"), (("stub", "axle"), "knuckle"), (("shear", "center"), "beam"),
+    (("with", "driver"), "occupied"), (("including", "driver"), "occupied"), (("incl", "driver"), "occupied"),
+    (("half", "track"), "halftrack"),
 )  # fmt: skip
 """Neighbours that are one word."""
 
@@ -109,6 +119,8 @@ class NameWords:
 def words_of(text: str) -> list[str]:
     """Return the plain words of a name, in order."""
     plain = text.replace("CoG", "cog").replace("CoM", "com")
+    for name, meaning in OPTIMUM.items():
+        plain = re.sub(name, meaning, plain, flags=re.IGNORECASE)
     pieces = [piece.lower() for piece in _PIECES.findall(plain)]
     terms: list[str] = []
     for piece in pieces:

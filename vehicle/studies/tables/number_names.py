@@ -1,8 +1,8 @@
 """Numbers of a car by the words of their names: key, dimension and possible sizes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from vehicle.studies.tables.name_words import NameWords
+from vehicle.studies.tables.name_words import NameWords, name_words
 from vehicle.studies.tables.unit_factor import (
     ANGLE,
     LENGTH,
@@ -66,14 +66,16 @@ QUANTITIES: dict[str, Quantity] = {
                              optional="vehicle total quarter corner wheel each"),
     "unsprung_mass": _quantity("unsprung mass", MASS, (10, 2e3), of_axle=None,
                                optional="wheel corner side each total one assembly suspension quarter"),
-    "kerb_mass": _quantity("mass|kerb mass", MASS, (100, 2e4), optional="vehicle total kerb empty unladen ready"),
+    "kerb_mass": _quantity("mass|kerb mass", MASS, (100, 2e4),
+                           optional="vehicle total kerb empty unladen ready occupied"),
     "axle_load": _quantity("mass|load|axle load", MASS, (20, 2e4), of_axle=True,
                            optional="vehicle kerb wheel corner total empty"),
     "front_share": _quantity("mass distribution|distribution|mass share|load distribution", NONE, (0.2, 0.8),
                              of_axle=None, optional="kerb"),
     "wheelbase": _quantity("wheelbase", LENGTH, (1.0, 8.0), optional="vehicle length"),
     "track": _quantity("track", LENGTH, (0.8, 3.0), of_axle=None, optional="wheel"),
-    "cog_height": _quantity("cog height|cog z|height mass cog|height", LENGTH, (0.2, 1.5),
+    "half_track": _quantity("halftrack", LENGTH, (0.4, 1.5), of_axle=None),
+    "cog_height": _quantity("cog height|cog z|height mass cog", LENGTH, (0.2, 1.5),
                             optional="vehicle above mass total over"),
     "cog_x": _quantity("cog|cog distance|cog x|cog longitudinal", LENGTH, (0.2, 5.0), of_axle=None,
                        optional="distance behind longitudinal x wheel mass between vehicle"),
@@ -91,7 +93,7 @@ QUANTITIES: dict[str, Quantity] = {
     "tyre_damping": _quantity("tyre damping|tyre damper", DAMPING, (0.0, 5e3), of_axle=None, optional="rate"),
     "ride_rate": _quantity("ride rate", RATE, (3e3, 3e5), of_axle=None, optional="wheel"),
     "wheel_rate": _quantity("wheel rate|wheel spring rate|wheel suspension rate", RATE, (3e3, 3e5), of_axle=None,
-                            optional="spring suspension"),
+                            optional="spring suspension center"),
     "suspension_rate": _quantity("suspension rate|suspension spring rate|suspension spring", RATE, (3e3, 3e5),
                                  of_axle=None),
     "spring_rate": _quantity("spring rate|spring", RATE, (3e3, 1e6), of_axle=None, optional="main"),
@@ -147,6 +149,18 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
         key, axle = SYMBOLS[symbol]
         return key, "" if QUANTITIES[key].of_axle is False else axle or name.axle, True
     terms = set(name.terms)
+    if "suspension" in name.text.lower() and "suspension" not in terms:
+        # "Front suspension stiffness" is the suspension stiffness of the front axle.
+        whole = replace(name, text="", terms=(*name.terms, "suspension"))
+        if (listed := number_of(whole)) is not None:
+            return listed
+    first, _, last = name.text.rpartition(" ")
+    if len(name.terms) > 1 and (symbol := "".join(letter for letter in last.lower() if letter.isalnum())) in SYMBOLS:
+        # "Sprung mass m_s": words and symbol of one number.
+        rest = name_words(first, right_letter="")
+        listed = number_of(replace(rest, axle=rest.axle or name.axle)) if rest.terms else None
+        if listed is not None and listed[0] == SYMBOLS[symbol][0]:
+            return listed
     for key, quantity in QUANTITIES.items():
         if (quantity.of_axle is True and not name.axle) or (quantity.of_axle is False and name.axle):
             continue

@@ -1,18 +1,20 @@
 """Statements of a table: each row as a point, a number, a curve or a remark, in the words and units of the file."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from vehicle.errors import DataError
 from vehicle.studies.tables.axes import stated_axes
-from vehicle.studies.tables.cells import CellTable, Row, read_cells
-from vehicle.studies.tables.name_words import AXLES, CORNERS, NameWords, name_words, right_letters, words_of
+from vehicle.studies.tables.cell_units import length_unit, name_and_unit
+from vehicle.studies.tables.cells import WITH_UNIT, CellTable, Row, read_cells
+from vehicle.studies.tables.name_words import AXLES, CORNERS, SIDES, NameWords, name_words, right_letters, words_of
 from vehicle.studies.tables.number_names import number_of
 from vehicle.studies.tables.point_names import point_of
+from vehicle.studies.tables.turned_points import turned_points
 from vehicle.studies.tables.tyre_file import TyreFile
-from vehicle.studies.tables.unit_factor import LENGTH, unit_factor
+from vehicle.studies.tables.unit_factor import unit_factor
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -27,12 +29,13 @@ class Point:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Number:
-    """Row of a number: its words, value (a text for the size of a tyre) and unit."""
+    """Row of a number: its words, value (a text for the size of a tyre), unit, and the texts of its other cells."""
 
     where: str
     name: NameWords
     value: float | str
     unit: str
+    note: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -82,27 +85,19 @@ COLUMNS = {
 KINDS = {word: sort for sort, terms in COLUMNS.items() for word in terms.split()}
 _COORDINATE = re.compile(r"(?:loc|pos|coord|coordinate)?[ _]*([xyz])(?:[ _]*(?:value|coordinate|coord|pos|loc))?", re.I)
 _BUSHING = re.compile(r"(k|c|d|stiffness|damping)[ _]*([xyz])", re.IGNORECASE)
-_UNIT_AT_END = re.compile(r"^(.*?)[\s_]*(?:\[([^\]]*)\]|\(([^)]*)\)|,\s*([^,\s]+)|[ _](mm|cm|inch|kg))$")
-_WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%°\"(/].*)")
 _AXLE_TITLE = re.compile(r"\b(front|rear) (axle|suspension|hardpoints)\b|\b(vorder|hinter)achse", re.IGNORECASE)
-_OF_UNITS = re.compile(
-    r"\bunits?\b|\beinheit|\[(mm|cm|m|in|inch)\]|\(mm\)|\bin mm\b|\bin millimet|\ball\b.*\bmm\b|\blength"
-)
+_ORIGIN = re.compile(r"\borigin\b|\bursprung\b", re.IGNORECASE)
+_SENTENCE = re.compile(r"\b(is|are|was|were|has|have|ist|sind|hat)\b|\.$", re.IGNORECASE)
+"""Marks of a text that tells of an axle instead of being the title of its rows."""
+LONGEST_TITLE = 6
+"""Most words of a title that does not begin with the axle or its points."""
+_FIRST = {*AXLES, *SIDES, "hardpoint", "hardpoints", "points", "coordinates"}
 TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
 
 
 def _triples(columns: Mapping[str, int]) -> list[str]:
     """Return the letters of the columns k, c, d, s that have x, y and z: stiffness or damping, by their units."""
     return [letter for letter in "kcds" if {f"{letter}{axis}" for axis in "xyz"} <= set(columns)]
-
-
-def name_and_unit(cell: str) -> tuple[str, str]:
-    """Return the name of a header and its unit such as "x [mm]", "mass (kg)", "track, m", "x_mm"; "" for no unit."""
-    match = _UNIT_AT_END.fullmatch(cell.strip())
-    if match is None:
-        return cell.strip(), ""
-    unit = next(group for group in match.groups()[1:] if group is not None)
-    return (match[1].strip(), unit.strip()) if unit == "" or unit_factor(unit) is not None else (cell.strip(), "")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -124,6 +119,7 @@ def statements(path: Path) -> Statements:
         DataError: it is no table, or a name or a number is ambiguous.
     """
     table = read_cells(path)
+    table = replace(table, rows=turned_points(table.rows))
     content = Statements(file=path.name)
     names = [row.cells[0] for row in table.rows if row.cells]
     _Reader(table=table, content=content, letters=right_letters(names), stem=path.stem).read()
@@ -140,6 +136,7 @@ class _Reader:
     axle: str = ""
     side: str = ""
     unit: str = ""
+    placed: bool = False
     curve: list[tuple[float, float]] = field(default_factory=list)
     coordinates: dict[tuple[str, str, str], dict[str, tuple[float, str, str, NameWords]]] = field(default_factory=dict)
 
@@ -156,7 +153,7 @@ class _Reader:
                 self._remark(" ".join(cells), title=False)
             elif not self._row(row):
                 text = " ".join(cells)
-                is_remark = bool(_length_unit(text) or "origin" in text.lower() or stated_axes([text], row.where))
+                is_remark = bool(length_unit(text) or _ORIGIN.search(text) or stated_axes([text], row.where))
                 if len(cells) > 1 and any(map(str.isdigit, " ".join(cells[1:]))) and not is_remark:
                     self.content.left_out.append((row.where, f"{', '.join(cells)[:60]!r}: not understood"))
                 self._remark(text, title=not is_remark)
@@ -174,7 +171,7 @@ class _Reader:
                 self._curve_row(row, pair)  # type: ignore[arg-type]
                 return True
             self.heads = None
-        if not any(value is not None for value in values) and not any(map(_WITH_UNIT.fullmatch, row.cells)) \
+        if not any(value is not None for value in values) and not any(map(WITH_UNIT.fullmatch, row.cells)) \
                 and not any(map(TYRE_SIZE.fullmatch, row.cells)):  # fmt: skip
             return self._header(row)
         if self.heads is not None and (triples := _triples(self.heads.columns)):
@@ -216,9 +213,10 @@ class _Reader:
                 sort = "velocity"
             elif not sort and plain and plain[0] in ("force", "kraft", "f") and "velocity" in columns:
                 sort = "force"
-            elif not sort and plain and set(plain) <= {*AXLES, "axle", *CORNERS, "f", "r", "value"}:
+            elif not sort and plain and set(plain) <= {*AXLES, *SIDES, *CORNERS, "axle", "f", "r", "value", "wheel"}:
                 word = next((word for word in plain if word in (*AXLES, *CORNERS, "f", "r")), "")
-                axles[index] = CORNERS.get(word, ({"f": "front", "r": "rear"}.get(word, word), ""))
+                side = next((word for word in plain if word in SIDES), "")
+                axles[index] = CORNERS.get(word, ({"f": "front", "r": "rear"}.get(word, word), side))
             if sort == "name":
                 names.append(index)
             if sort and sort not in columns:
@@ -236,8 +234,11 @@ class _Reader:
         )
         if not listed:
             return False
+        if self.heads is None and self.placed and "value" in columns:
+            self._title("")
         if "name" not in columns:
-            free = [index for index in range(len(row.cells)) if index not in {*columns.values(), *axles}]
+            taken = {*columns.values(), *(() if points else axles)}
+            free = [index for index in range(len(row.cells)) if index not in taken]
             columns["name"] = free[0] if free else 0
         # "Front suspension (mm), X, Y, Z": the head of the names is a title.
         title, unit = name_and_unit(row.cells[columns["name"]])
@@ -277,9 +278,13 @@ class _Reader:
         skipped = set() if heads is None else {heads.columns[key] for key in ("unit", "skip") if key in heads.columns}
         if heads is not None and heads.axles:
             for index, (axle, side) in heads.axles.items():
-                if index < len(values) and values[index] is not None:
-                    name = self._name(row, text, axle, side)
-                    self._add_number(row, name, values[index], unit or heads.units.get(f"axle{index}", ""))
+                cell = row.cells[index] if index < len(row.cells) else ""
+                joined = WITH_UNIT.fullmatch(cell)
+                size = TYRE_SIZE.fullmatch(cell)
+                number = self.table.number(row, joined[1] if joined and not size else cell)
+                if number is not None or size:
+                    of_cell = joined[2] if joined and not size else unit or heads.units.get(f"axle{index}", "")
+                    self._add_number(row, self._name(row, text, axle, side), cell if size else number, of_cell)
             return True
         after = [(index, value) for index, value in enumerate(values) if value is not None and index not in skipped]
         if heads is not None and "value" in heads.columns:
@@ -287,8 +292,11 @@ class _Reader:
         if len(after) == 3 and after[2][0] - after[0][0] == 2:
             self._add_point(row, self._name(row, text), tuple(value for _, value in after), unit or self.unit)  # type: ignore[arg-type]
             return True
+        if heads is None and self.placed:
+            # Numbers after the points of an axle and an empty row are those of the car.
+            self._title("")
         if not after:
-            joined = next(filter(None, map(_WITH_UNIT.fullmatch, row.cells)), None)
+            joined = next(filter(None, map(WITH_UNIT.fullmatch, row.cells)), None)
             size = next(filter(None, map(TYRE_SIZE.fullmatch, row.cells)), None)
             if size is not None:
                 self._add_number(row, self._name(row, text), size[0], "")
@@ -299,9 +307,14 @@ class _Reader:
             self._add_number(row, self._name(row, text), number, joined[2])
             return True
         index, value = after[0]
-        if index + 1 < len(row.cells) and unit_factor(row.cells[index + 1].strip("()[]")) is not None:
-            # "sprung mass (ms), 1250, kg": the cell after the value takes precedence.
-            unit = row.cells[index + 1]
+        following = next((row.cells[other] for other in range(index + 1, len(row.cells))
+                          if row.cells[other] and values[other] is None), "")  # fmt: skip
+        if unit_factor(following.strip("()[]")) is not None:
+            # "sprung mass (ms), 1250, kg": the text after the value takes precedence.
+            unit = following
+        if more := [row.cells[other] for other, _ in after[1:]]:
+            self.content.left_out.append((row.where, f"{text!r}: the further values {', '.join(more)[:60]}; the first "
+                                          "one counts"))  # fmt: skip
         self._add_number(row, self._name(row, text), value, unit)
         return True
 
@@ -315,7 +328,8 @@ class _Reader:
                 self.coordinates.setdefault((key, name.axle, name.side), {})[last] = (value, unit, row.where, point)
                 return
         assert value is not None  # fmt: skip
-        self.content.numbers.append(Number(where=row.where, name=name, value=value, unit=unit))
+        note = " ".join(cell for cell in row.cells if name_and_unit(cell)[0] != name.text)
+        self.content.numbers.append(Number(where=row.where, name=name, value=value, unit=unit, note=note))
 
     def _joined(self, parts: dict[str, tuple[float, str, str, NameWords]], axle: str, side: str) -> None:
         _, unit, where, name = next(iter(parts.values()))
@@ -330,6 +344,7 @@ class _Reader:
         if not name.axle and len(ends) == 1:
             name = replace(name, axle=ends.pop())
         self.content.points.append(Point(where=row.where, name=name, at=at, unit=unit))
+        self.placed = True
 
     def _curve_row(self, row: Row, pair: tuple[float, float]) -> None:
         heads, last = self.heads, self.content.curves[-1] if self.content.curves else None
@@ -366,32 +381,20 @@ class _Reader:
         """Keep a text; a title such as "Front axle [mm]" holds for the rows below."""
         self.content.remarks.append(text)
         self.curve = []
-        if title:
+        terms = words_of(text)
+        if _SENTENCE.search(text.strip()) or (len(terms) > LONGEST_TITLE and terms[0] not in _FIRST):
+            pass
+        elif title:
             self._title(text)
-        elif match := _AXLE_TITLE.search(text):
+        elif (match := _AXLE_TITLE.search(text)) and not _ORIGIN.search(text[: match.start()]):
             self.axle = "front" if match[0].lower()[0] in "fv" else "rear"
-        if unit := _length_unit(text):
+        if unit := length_unit(text):
             self.unit = unit
 
     def _title(self, text: str) -> None:
         terms = words_of(text)
         ends = {word for word in terms if word in AXLES}
         sides = {word for word in terms if word in ("left", "right")}
+        self.placed = False
         self.axle = ends.pop() if len(ends) == 1 else ""
         self.side = sides.pop() if len(sides) == 1 else ""
-
-
-def _length_unit(text: str) -> str:
-    """Return the unit of length that a remark states: "all in mm", "units: mm", "x [m]"; "" for none."""
-    terms = list(_units(text))
-    return terms[0] if len(set(terms)) == 1 else ""
-
-
-def _units(text: str) -> Iterator[str]:
-    lowered = text.lower()
-    stated = _OF_UNITS.search(lowered)
-    if stated:
-        for word in re.findall(r"[a-z]+", lowered[stated.start() :]):
-            unit = unit_factor(word)
-            if unit is not None and unit.dimension == LENGTH and word != "in":
-                yield {"millimetres": "mm", "millimeters": "mm", "millimeter": "mm"}.get(word, word)

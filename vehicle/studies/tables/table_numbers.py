@@ -1,6 +1,7 @@
 """Numbers of a table in SI units: units stated or by size, masses of wheels and axles, both sides of an axle."""
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -8,9 +9,9 @@ from typing import Any
 from vehicle.digits import number as shown
 from vehicle.errors import DataError
 from vehicle.studies.tables.name_words import words_of
-from vehicle.studies.tables.number_names import GUESSED, PER_WHEEL, QUANTITIES, SI, number_of
+from vehicle.studies.tables.number_names import DAMPING, GUESSED, PER_WHEEL, QUANTITIES, RATE, SI, number_of
 from vehicle.studies.tables.statements import Number, Statements
-from vehicle.studies.tables.unit_factor import MASS, unit_factor
+from vehicle.studies.tables.unit_factor import FORCE, MASS, unit_factor
 
 AXLES = ("front", "rear")
 GRAVITY = 9.81
@@ -18,6 +19,15 @@ GRAVITY = 9.81
 
 ONE_WHEEL, WHOLE_AXLE = 55.0, 75.0
 """Unsprung mass without a word [kg]: up to the first of a wheel, from the second on of an axle."""
+
+_OF_BOTH_WHEELS = re.compile(r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bper pair\b")
+"""Words of a rate of both wheels of an axle together."""
+
+_AXLE = {"axle", "both", "pair"}
+"""Words of a mass of an axle."""
+
+ONE_AXLE = 120.0
+"""Largest unsprung mass of each axle where no axle is named [kg]: four wheels of a light car have more."""
 
 AGREE = 0.01
 """Relative difference of two statements of one number that is round-off."""
@@ -81,6 +91,8 @@ def read_numbers(content: Statements, result: CarNumbers) -> Values:
         if key == "axle_load" and row.unit.strip() == "%":
             key = "front_share"
         value = Stated(value=_si(row, key, result), where=row.where, text=_text(row))
+        if key == "half_track":
+            key, value = "track", replace(value, value=2.0 * value.value, text=f"2 x {value.text}")
         if symbol and len(row.name.terms) <= 2 and row.name.text.lower() not in ("mass", "wheelbase"):
             symbols.append(f"{row.name.text} {key_words(key, axle)}")
         value = _of_axle(row, key, value, result, per_wheel)
@@ -110,7 +122,7 @@ def _si(row: Number, key: str, result: CarNumbers) -> float:
     assert isinstance(row.value, float)  # fmt: skip
     if row.unit:
         unit = unit_factor(row.unit, quantity.dimension)
-        if key == "axle_load" and unit is not None and unit.dimension == (1, 1, -2, 0):
+        if quantity.dimension == MASS and unit is not None and unit.dimension == FORCE:
             return row.value * unit.factor / GRAVITY
         if key == "front_share" and row.unit == "kg":
             unit = None
@@ -157,14 +169,19 @@ def _by_the_sum(content: Statements) -> bool | None:
 
 
 def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_sum: bool | None) -> Stated:
-    """Return masses of an axle from masses of a wheel; `by_the_sum`: see `_by_the_sum`."""
+    """Return masses of an axle from those of a wheel, rates of a wheel from those of an axle; by_the_sum: see above."""
+    if QUANTITIES[key].dimension in (RATE, DAMPING) and _OF_BOTH_WHEELS.search(f"{row.name.text} {row.note}".lower()):
+        return replace(value, value=0.5 * value.value, text=f"1/2 x {value.text}")
     if key not in ("unsprung_mass", "axle_load", "sprung_mass") or row.name.side in ("left", "right"):
         return value
-    terms, axle = set(row.name.terms) | set(row.unit.lower().split()), row.name.axle
+    terms, axle = {*row.name.terms, *row.unit.lower().split(), *words_of(row.note)}, row.name.axle
     per_wheel = bool(terms & set(PER_WHEEL))
     if key == "unsprung_mass" and by_the_sum is not None:
         per_wheel = by_the_sum
-    elif not per_wheel and key == "unsprung_mass" and "axle" not in row.name.text.lower():
+    elif key == "unsprung_mass" and not (axle or per_wheel) and ("total" in terms or value.value > ONE_AXLE):
+        raise DataError(f"{row.where}: {row.name.text!r} = {value.value:g} kg may be the mass of an axle or of all "
+                        "wheels; write the mass of each axle")  # fmt: skip
+    elif not per_wheel and key == "unsprung_mass" and not _AXLE & (terms | set(words_of(row.name.text))):
         if ONE_WHEEL < value.value < WHOLE_AXLE:
             raise DataError(f"{row.where}: {row.name.text!r} = {value.value:g} kg may be the mass of a wheel or of an "
                             "axle; write \"per wheel\" or \"axle\" in its name")  # fmt: skip
