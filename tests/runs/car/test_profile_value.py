@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.benchmarks.profile_pieces import made_profile, of_whole
+from tests.benchmarks.profile_pieces import STEP, made_profile, of_whole
 from tests.validation import validated
 from vehicle import Car, over_profile, road
 from vehicle.commands.shaker import main as shaker
@@ -65,6 +65,21 @@ def test_more_pieces_for_a_higher_precision_and_all_of_them_without_an_error(fil
     whole = of_whole(sedan, files["bumps"])
     # All pieces are driven without a join: the whole profile from 2 s on.
     assert exact.values["weighted"] == pytest.approx(whole["weighted"], rel=1e-3)
+
+
+def test_a_smooth_profile_up_a_hill(sedan: Car, tmp_path: Path):
+    """The twin comes down from 74 m again, and no start of a slope rings in the filters: all pieces are the whole."""
+    file, x = tmp_path / "hill.csv", STEP * np.arange(round(920.0 / STEP) + 1)
+    rough = np.cumsum(2e-4 * np.random.default_rng(1).standard_normal(x.size))
+    columns = np.column_stack([x, 0.08 * x + rough, 0.08 * x + rough])
+    np.savetxt(file, columns, delimiter=",", header="distance [m],left [m],right [m]", comments="")
+    value, whole = over_profile(sedan, road(file, 80, precision=1e-3)), of_whole(sedan, file)
+    assert len(value.parts) == value.pieces == 10
+    for name in ("weighted", "weighted_x", "unweighted", "unweighted_x"):
+        # Run and twin end a sample earlier, where the twin goes on, than the whole.
+        assert value.values[name] == pytest.approx(whole[name], rel=1e-4), name
+    # Of the mean loads on the slope, the twin has the periodic part.
+    assert value.values["tyre_load_fr"] == pytest.approx(whole["tyre_load_fr"], rel=2e-3)
 
 
 def test_pieces_in_which_a_tyre_lifts_are_always_run(files: dict[str, Path], monkeypatch: pytest.MonkeyPatch):

@@ -34,6 +34,15 @@ def test_each_part_is_the_whole_up_to_one_height(whole: Signal):
         assert np.ptp(differences) < 1e-12
 
 
+def test_the_start_of_a_signal_rises_once(whole: Signal):
+    signal, places = joined_parts(whole, [(LEAD_S, 6.0)])
+    assert places == [LEAD_S]
+    for wheel, row in signal.displacement.items():
+        start = whole.displacement[wheel][: row.size]
+        # One height for all plates, which begin at 0.
+        assert row == pytest.approx(start, abs=1e-12)
+
+
 def test_parts_are_joined_without_jumps_and_begin_at_rest(whole: Signal):
     signal, _ = joined_parts(whole, [(5.0, 9.0), (20.0, 24.0), (33.0, 37.0)])
     fastest = max(np.max(np.abs(np.diff(row))) for row in whole.displacement.values())

@@ -33,6 +33,10 @@ FALL_S, PAUSE_S = 1.0, 4.0
 """Times [s] in which the plates return to rest after the record, and in which the twin comes to rest, until it repeats:
 a motion of 1 Hz with a damping ratio of 0.2 decays to 0.7 %."""
 
+FALL_M = 0.1
+"""Height of the plates from which they return more slowly [m], with the same acceleration as from this height, at most
+0.5 m/s2: a profile can end on a hill, and a fall of 100 m in `FALL_S` would shake the twin for the whole record."""
+
 LAW = "law_"
 """Prefix of the displacement of a law as an output of the twin."""
 
@@ -129,7 +133,8 @@ def twin_run(
 
 def returning(signal: Signal) -> tuple[dict[str, Vector], float]:
     """Return the plates of a record, which begin at rest, continued to rest again [m], and the whole length [s]."""
-    fall, step = round(FALL_S / signal.timestep), signal.timestep
+    height = max(float(abs(displacement[-1])) for displacement in signal.displacement.values())
+    fall, step = round(FALL_S * max(height / FALL_M, 1.0) ** 0.5 / signal.timestep), signal.timestep
     way = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, fall + 1) / fall))
     count = signal.time.size
     total = fast_length(count + fall + round(PAUSE_S / step))

@@ -281,13 +281,15 @@ class _Survey:
     def _energies(self, rows: Mapping[str, Vector], spans: Sequence[slice]) -> dict[str, Vector]:
         """Return the energies sum y^2 of the values in the pieces."""
         energies: dict[str, Vector] = {}
-        seat = application("seat")
+        seat, evaluated = application("seat"), slice(spans[0].start, spans[-1].stop)
         for prefix, point in self.points.items():
             xyz = np.stack([rows[f"{point}_acc_{axis}"] for axis in AXES])
-            lines = np.fft.rfft(xyz, axis=1)
-            frequency = np.fft.rfftfreq(xyz.shape[1], self.step)
+            # Without the start, which would ring in this filter.
+            in_band = np.zeros_like(xyz)
+            lines = np.fft.rfft(xyz[:, evaluated], axis=1)
+            frequency = np.fft.rfftfreq(count := evaluated.stop - evaluated.start, self.step)
             lines *= np.sqrt(band_shares(frequency, frequency[1], COMFORT_BAND))
-            in_band = np.fft.irfft(lines, xyz.shape[1], axis=1)
+            in_band[:, evaluated] = np.fft.irfft(lines, count, axis=1)
             for name, axes, factors in (
                 (UNWEIGHTED, in_band, (1.0, 1.0, 1.0)),
                 (WEIGHTED, weighted_axes(self.step, xyz), seat.comfort_factors),

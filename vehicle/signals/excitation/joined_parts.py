@@ -47,7 +47,8 @@ def joined_parts(signal: Signal, parts: Sequence[tuple[float, float]]) -> tuple[
         piece = np.array(plates[:, begin:end])
         offset = float(np.mean(before - piece[:, :fade])) if pieces else -float(np.mean(piece[:, 0]))
         piece += offset
-        piece[:, :fade] = rise * piece[:, :fade] + (1.0 - rise) * before
+        if begin:  # the start of the signal rises itself
+            piece[:, :fade] = rise * piece[:, :fade] + (1.0 - rise) * before
         pieces.append(piece)
         before = plates[:, end : end + fade] + offset
         if before.shape[1] < fade:  # the end of the signal: nothing follows
