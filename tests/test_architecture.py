@@ -25,7 +25,12 @@ WINGS = {
     "drawing": ("rendering", "notebook"),
     "runs": ("car", "figures", "comparison", "output", "targets", "report"),
     "handover": ("fmu", "page", "bench"),
-    "studies": ("tables", "design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
+    "studies": (
+        "tables",
+        *("design", "mounts", "dampers", "diagnosis", "replication", "sweeps"),
+        "tuning",
+        "optimisation",
+    ),
     "commands": (),
 }
 """Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
@@ -85,6 +90,8 @@ ROOMS: dict[str, set[str]] = {
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "tables", "threads"},
     "mounts": {"formats", "parameters"},
     "dampers": {"core", "formats", "parameters", "records", "rendering", "report", "threads"},
+    "diagnosis": {"analysis", "car", "excitation", "formats", "laws", "output", "parameters", "records", "reduced"}
+    | {"rendering", "threads"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
     "sweeps": {"analysis", "car", "excitation", "figures", "flexbody", "formats", "machine", "notebook"}
     | {"output", "parameters", "reduced", "rendering", "report", "simulation", "threads"},
@@ -92,11 +99,11 @@ ROOMS: dict[str, set[str]] = {
     | {"records", "reduced", "rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "excitation", "figures", "formats", "output", "parameters", "rendering"}
     | {"replacement", "sweeps", "targets"},
-    "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "excitation"}
-    | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output", "page"}
-    | {"parameters", "records", "rendering", "replication", "report", "sweeps", "tables", "threads", "tuning"}
-    | {"version"},
-    "__init__": {"car", "comparison", "dampers", "excitation", "figures", "fmu", "formats", "handed_down"}
+    "commands": {"analysis", "assembly", "bench", "car", "comparison", "core", "dampers", "design", "diagnosis"}
+    | {"excitation", "flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
+    | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps", "tables", "threads"}
+    | {"tuning", "version"},
+    "__init__": {"car", "comparison", "dampers", "diagnosis", "excitation", "figures", "fmu", "formats", "handed_down"}
     | {"laws", "mounts", "optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},
@@ -118,18 +125,8 @@ HEAVY = {
 }
 
 MAKERS = {
-    "add_actuator",
-    "add_body",
-    "add_equality",
-    "add_exclude",
-    "add_freejoint",
-    "add_geom",
-    "add_joint",
-    "add_mesh",
-    "add_numeric",
-    "add_sensor",
-    "add_site",
-    "add_tendon",
+    *("add_actuator", "add_body", "add_equality", "add_exclude", "add_freejoint", "add_geom"),
+    *("add_joint", "add_mesh", "add_numeric", "add_sensor", "add_site", "add_tendon"),
 }
 """Methods of MjSpec that make elements of a model of the car."""
 

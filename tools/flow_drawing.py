@@ -11,7 +11,13 @@ WIDTH, HEIGHT, LINE = 1000, 560, 18
 
 BOXES = {
     "commands": (30, 30, 940, 32, ["python -m vehicle NAME, or import vehicle"]),
-    "studies": (420, 96, 550, 66, ["tables  design  mounts  dampers  replication  sweeps  tuning  optimisation"]),
+    "studies": (
+        420,
+        96,
+        550,
+        66,
+        ["tables  design  mounts  dampers  diagnosis  replication  sweeps  tuning  optimisation"],
+    ),
     "model": (210, 200, 180, 156, ["parameters", "laws", "flexbody", "shapes", "assembly", "templates, vehicles"]),
     "engines": (420, 200, 170, 120, ["simulation", "kinematics", "linear", "reduced, steady"]),
     "runs": (620, 200, 160, 138, ["car", "figures", "comparison", "output", "targets", "report"]),

@@ -85,6 +85,7 @@ if TYPE_CHECKING:
     from vehicle.signals.records.record_comfort import evaluate_comfort as evaluate_comfort
     from vehicle.studies.dampers.fitted_damper import FittedDamper as FittedDamper
     from vehicle.studies.dampers.fitted_damper import fit_damper as fit_damper
+    from vehicle.studies.diagnosis.car_diagnosis import CarDiagnosis as CarDiagnosis
     from vehicle.studies.mounts.mount_fit import MountFit as MountFit
     from vehicle.studies.mounts.mount_fit import fit_mount as fit_mount
     from vehicle.studies.optimisation.car_search import optimise as optimise
@@ -107,6 +108,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "Car": "vehicle.runs.car.car",
     "CarData": "vehicle.runs.car.car_data",
+    "CarDiagnosis": "vehicle.studies.diagnosis.car_diagnosis",
     "Choice": "vehicle.signals.records.choice",
     "ComfortMeasure": "vehicle.studies.sweeps.measure",
     "Comparison": "vehicle.runs.comparison.comparison",
@@ -184,6 +186,9 @@ def _handed(name: str) -> Callable[..., Any]:
 
 
 HANDED |= {name: _handed(name) for name in ("load_run", "save_car", "save_run", "write_report")}
+HANDED["diagnose_car"] = lambda *given, **options: import_module("vehicle.studies.diagnosis.diagnosis").diagnose_car(
+    *given, **options
+)
 HANDED["steady_run"] = lambda *given: import_module("vehicle.runs.car.steady_run").car_steady(*given)
 HANDED["figure_of"] = lambda run, name: import_module("vehicle.runs.figures.value").figure_of(run, name)
 

@@ -8,4 +8,5 @@ from collections.abc import Callable
 from typing import Any
 
 HANDED: dict[str, Callable[..., Any]] = {}
-"""Name to function: the public `load_run`, `save_car`, `save_run`, `write_report`, `figure_of` and `steady_run`."""
+"""Name to function: the public `load_run`, `save_car`, `save_run`, `write_report`; `figure_of`, `steady_run` and
+`diagnose_car`."""

@@ -11,6 +11,7 @@ import numpy as np
 from tests.faults.commands import DOOR, Written, writing_alone
 from tests.model.flexbody.hung_body import HungBody, write_test
 from tests.model.flexbody.modal_test import write_modes
+from vehicle import Car, road
 from vehicle.__main__ import main
 from vehicle.commands import COMMANDS, module_of
 from vehicle.model.parameters.shipped import FOCUS_FILE
@@ -89,6 +90,16 @@ def damper_file(path: Path, damping: float) -> Path:
     return path
 
 
+def drive_file(path: Path, seed: int) -> Path:
+    """Write a record of a drive over a road."""
+    names = [f"seat_rail_acc_{axis}" for axis in "xyz"]
+    run = Car.load("focus_road").run(road("C", 80, duration=21, seed=seed), "reduced", channels=names)
+    rows = np.column_stack([run.time, *(run[name] for name in names)])[run.time >= 3.0]
+    head = ",".join(["time [s]", *(f"{name} [m/s2]" for name in names)])
+    np.savetxt(path, rows, "%.5f", ",", header=head, comments="")
+    return path
+
+
 def shipped_copies(inputs: Path, file: Path, old: str, new: str) -> list[str]:
     """Write a copy of a shipped file, and one with another number."""
     text = file.read_text(encoding="utf-8")
@@ -105,6 +116,7 @@ def commands(inputs: Path) -> list[Written]:
     first, second = signal_file(inputs / "first.csv", 3.0), signal_file(inputs / "second.csv", 4.0)
     mounts = mount_file(inputs / "mount1.csv", 200.0), mount_file(inputs / "mount2.csv", 300.0)
     dampers = damper_file(inputs / "damper1.csv", 1200.0), damper_file(inputs / "damper2.csv", 1500.0)
+    drives = drive_file(inputs / "drive1.csv", 1), drive_file(inputs / "drive2.csv", 2)
     tables = inputs / "car1.csv", inputs / "car2.csv"
     for path, mass in zip(tables, (1450, 1500), strict=True):
         path.write_text(f"mass,{mass},kg\nfront wheel centre x,0,mm\nfront wheel centre y,750,mm\n"
@@ -137,7 +149,7 @@ def commands(inputs: Path) -> list[Written]:
     vary = ("--vary", "damper.coulomb_friction=50,100", "--engine", "reduced", "--output", "a")
     search = ("--vary", "damper.coulomb_friction=50:100", "--minimise", "weighted", "--cars", "8", "--population", "8")
     new = ("new", "a", "--from", "sedan", "--wheelbase", "2.65", "--front-axle-load", "800", "--kerb-mass")
-    road = ("road", "--speed", "80", "--duration", "2", "--output", "a.csv", "--class")
+    class_road = ("road", "--speed", "80", "--duration", "2", "--output", "a.csv", "--class")
     kinematics = ("kinematics", "--vehicle", "sedan", "--output", "a", "--travel", "0:10:10", "--axle")
     orders = ("orders", "--vehicle", "sedan", "--set", "front.imbalance.mass=0.01", "--set",
               "front.imbalance.radius=0.2", "--duration", "4", "--output", "a", "--speed")  # fmt: skip
@@ -156,7 +168,7 @@ def commands(inputs: Path) -> list[Written]:
         signals("sweep", "sweep", *vary, "--executor", "tests.faults.commands:InProcess"),
         signals("sweep --report", "sweep", *vary, "--executor", "tests.faults.commands:InProcess", "--report"),
         signals("optimise", "optimise", *search, "--output", "a"),
-        job("road", road, ["A"], ["B"]),
+        job("road", class_road, ["A"], ["B"]),
         job("kinematics", kinematics, ["front"], ["rear"]),
         job("orders", orders, ["100:110:10"], ["110:120:10"]),
         job("loads", ["loads", "--output", "."], [str(runs[0])], [str(runs[1])]),
@@ -172,6 +184,8 @@ def commands(inputs: Path) -> list[Written]:
         changed("levels", "levels", "focus", "--frequency", "3,8", "--level", "0.1,1", "--output", "a"),
         changed("fmu", "fmu", "--output", "a.fmu"),
         job("modes --uff", ["modes", "--uff", "a.uff", "--damper"], ["stuck"], ["sliding"]),
+        job("diagnose", ["diagnose", "--vehicle", "focus_road", "--speed", "80", "--drives", "160", "--output", "a"],
+            [str(drives[0])], [str(drives[1])]),
         job("fit-mount", ["fit-mount", "--output", "a"], [str(mounts[0])], [str(mounts[1])]),
         job("fit-damper", ["fit-damper", "--output", "a"], [str(dampers[0])], [str(dampers[1])]),
         job("body import", ["body", "import", "--output", "a.toml"], [str(bodies[0])], [str(bodies[1])]),

@@ -61,6 +61,7 @@ WORDS = {
                  "--cars", "8", "--population", "8", "--output", "out/search"),
     "tune": ("CAR", "--parameters", "rear.damper.viscous=300:4000", "--engine", "reduced", "--channels",
              "knuckle_fl_acc_z", "--record", "RUN/time.npz", "--output", "out"),
+    "diagnose": ("RUN/time.npz", "--vehicle", "CAR", "--speed", "80", "--drives", "160", "--output", "out"),
     "fit-mount": ("controller.fmu", "--output", "out"),
     "fit-damper": ("controller.fmu", "--output", "out"),
     "new": ("out", "--from", "CAR", "--kerb-mass", "1450", "--wheelbase", "2.65", "--front-axle-load", "800",

@@ -20,6 +20,7 @@ COMMANDS = (
     "drive",
     "optimise",
     "tune",
+    "diagnose",
     "fit-mount",
     "fit-damper",
     "new",

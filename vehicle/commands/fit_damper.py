@@ -121,7 +121,7 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
     paths = settings.destination.files(Path("runs/damper"), list(contents))
     write_together(paths, contents.values())
     texts = [fit_json(fitted) for fitted in fits]
-    again = [False, *(one.tests is other.tests for one, other in itertools.pairwise(fits))]
+    again = [False, *(fit.tests is following.tests for fit, following in itertools.pairwise(fits))]
     summary = [line for fitted, same in zip(fits, again, strict=True) for line in summary_lines(fitted, same)]
     summary.append(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
     console.result(texts[0] if len(texts) == 1 else {"dampers": texts}, "\n".join(summary))

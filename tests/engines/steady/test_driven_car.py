@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle import DataError, Signal
-from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
-from vehicle.engines.simulation.recorded_acceleration import acceleration_gain
+from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration, acceleration_gain
 from vehicle.engines.steady.plate_lines import plate_lines, require_period
 
 PERIOD = 0.5

@@ -25,7 +25,7 @@ SCALED = (1.0, 8.0)
 
 
 class DrivenCar:
-    """Linear car between its ports on plates that repeat.
+    """Linear car on periodic plates, between the ports of its laws.
 
     Args:
         model: pole model.

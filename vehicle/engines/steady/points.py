@@ -49,7 +49,7 @@ class Points:
         return [self._followed(ports, cycle, way) for way in (upwards, upwards[::-1])]
 
     def _followed(self, ports: Sequence[Port], cycle: Cycle, way: Indices) -> PeriodicForces:
-        """Return states of which each starts at the last one; way: points in the order of the levels, (l, f)."""
+        """Return the states of points in the order of their levels, (l, f); each level starts at the last state."""
         drive, parts = self.linear[:, self.at], list[PeriodicForces]()
         for points in way:
             present = None if self.present is None else self.present.at(points)

@@ -47,9 +47,9 @@ def profile_study(settings: ShakerSettings, listener: Listener, command: str) ->
         "--measured": settings.measured.measured,
         "--report": settings.report.report,
     }
-    given = [flag for flag, value in parts.items() if value is not None]
-    given += [settings.declared()[name]["flag"] for name in settings.given(without=("engine", "skip"))]
-    for flag in given:
+    flags = [flag for flag, value in parts.items() if value is not None]
+    flags += [settings.declared()[name]["flag"] for name in settings.given(without=("engine", "skip"))]
+    for flag in flags:
         raise ConfigurationError(
             f"{flag}: belongs to a run of a whole road, but --precision runs pieces of a measured profile; leave one "
             "of them out"

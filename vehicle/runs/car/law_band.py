@@ -24,7 +24,7 @@ EDGES = ("soft", "firm")
 def edge_overrides(
     dampers: Mapping[str, Damper], edge: str, velocities: tuple[float, float] = (0.0, np.inf)
 ) -> dict[str, Any]:
-    """Return the parameters of a car with the edge of the band of all its dampers that have one.
+    """Return the parameters of a car whose banded dampers have the curve of an edge.
 
     Args:
         dampers: path in the vehicle file, for example "front.damper", to the law.

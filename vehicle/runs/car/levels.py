@@ -80,7 +80,7 @@ class LevelMap(LevelStates):
 
     @property
     def unsticking(self) -> Vector:
-        """Return the level at which each damper begins to slip; NaN outside the levels; (d, f).
+        """Return the level of first slip of each damper; NaN outside the levels; (d, f).
 
         The first damper of a frequency has it in closed form. While others slip already, it is where the force of the
         stuck damper, continued from the last two levels, reaches its friction limit.
@@ -259,7 +259,7 @@ def car_levels(
 
 
 def require_nonlinear(car: Any, driven: LevelInput) -> None:
-    """Check that a car has ports for all its laws, and at least one.
+    """Check that the steady engine takes the laws of a car, and that the car is not linear.
 
     Raises:
         ConfigurationError: see `car_ports`; the car is linear.

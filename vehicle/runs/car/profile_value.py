@@ -10,7 +10,7 @@ its twin in each piece, the twin also on the joined road, which takes out the ef
     y_s = E_s E'_s,whole / E'_s,joined,    x'_j = E'_j,whole,
 
 give the energy of the whole profile and its error. The constants of the twin, mean((F - mean F) v)/mean(v^2) of each
-damper, are those of the run with each piece weighted by 1/p_s, as in the whole profile. What the twin lacks, friction
+damper, come from the run, where each piece has the weight 1/p_s, as in the whole profile. What the twin lacks, friction
 above all, is in the ratios of the run pieces, whose spread is the stated error.
 """
 
@@ -87,7 +87,7 @@ class ProfileValue:
         return {name: comfort_units(seated=True).get(name, "N") for name in self.values}
 
     def text(self, name: str) -> str:
-        """Return a value with its unit and error, as "0.4953 m/s2 ± 0.8 %"."""
+        """Return a value with its unit and error, for example "0.4953 m/s2 ± 0.8 %"."""
         value, half = self.values[name], self.half_intervals[name]
         error = f" ± {number(100.0 * half / value, 2)} %" if half > 0.0 else ""
         unit = self.units[name]
@@ -95,7 +95,7 @@ class ProfileValue:
 
     @property
     def words(self) -> str:
-        """Return the road and what was run of it."""
+        """Return road, evaluated length and run pieces as text."""
         run = f"{len(self.parts)} of {self.pieces} pieces run ({self.run.signal.duration:.3g} s"
         engine = self.run.recording.statistics.engine
         return f"{self.road}: {self.length:.4g} s evaluated, {run}, {engine}); ± is the 95 % interval"
@@ -203,9 +203,9 @@ class _Survey:
         lifted = [rows[name] < -load for name, load in self.loads.items() if load > 0.0]
         engaged = [(rows[name] < law.low) | (rows[name] > law.high) for name, law in others.items()]
         always = np.zeros(len(self.spans), dtype=np.bool_)
-        for outside, most in ((lifted, MOST_LIFTED), (engaged, MOST_ENGAGED)):
+        for outside, limit in ((lifted, MOST_LIFTED), (engaged, MOST_ENGAGED)):
             for each in outside:
-                always |= np.array([np.mean(each[span]) > most for span in self.spans])
+                always |= np.array([np.mean(each[span]) > limit for span in self.spans])
         weighted = weighted_axes(self.step, np.stack([rows[f"seat_rail_acc_{axis}"] for axis in AXES]))
         power = np.square(application("seat").comfort_factors) @ weighted**2
         sizes, fourth = np.array([[np.sum(power[span]), np.sum(power[span] ** 2)] for span in self.spans]).T
@@ -219,24 +219,24 @@ class _Survey:
         """Return the value over the profile by a run of a sample."""
         chosen = [self.spans[piece] for piece in sample.chosen.tolist()]
         parts = [(span.start * self.step, span.stop * self.step) for span in chosen]
-        signal, places = joined_parts(self.signal, parts)
+        signal, begins = joined_parts(self.signal, parts)
         signal = replace(signal, source=f"{len(parts)} pieces of {self.name}")
         dampers = damper_channels(self.car.vehicle)
         run = self.car.run(signal, engine, channels=[*self.channels, *dampers])
         spans = [
-            slice(begin := round(place / self.step), begin + span.stop - span.start)
-            for place, span in zip(places, chosen, strict=True)
+            slice(begin := round(start / self.step), begin + span.stop - span.start)
+            for start, span in zip(begins, chosen, strict=True)
         ]
         damping = self._damping(run, spans, sample)
-        known = self._energies(self._twin(self.signal, damping, self.channels), self.spans)
+        whole = self._energies(self._twin(self.signal, damping, self.channels), self.spans)
         joined = self._energies(self._twin(signal, damping, self.channels), spans)
         rows = {name: run[name] - self.loads.get(name, 0.0) for name in self.channels}
         samples = self.spans[-1].stop - self.spans[0].start
         values, halves, relative = {}, {}, {}
         for name, energy in self._energies(rows, spans).items():
-            adapted = np.divide(energy * known[name][sample.chosen], joined[name],
+            adapted = np.divide(energy * whole[name][sample.chosen], joined[name],
                                 out=np.zeros_like(energy), where=joined[name] > 0.0)  # fmt: skip
-            total, residuals = sample.total(adapted, known[name])
+            total, residuals = sample.total(adapted, whole[name])
             # d ln RMS = dE/(2 E).
             relative[name] = 0.5 * residuals / total if total > 0.0 else residuals
             values[name] = math.sqrt(total / samples)
@@ -256,7 +256,7 @@ class _Survey:
         )
 
     def _damping(self, run: Run, spans: Sequence[slice], sample: PieceSample) -> Vector:
-        """Return the damping constants of the run, in which each piece counts for those that it stands for."""
+        """Return the damping constants of the run, with weight 1/p for each piece."""
         weights = np.concatenate(
             [
                 np.full(span.stop - span.start, p**-0.5)
@@ -279,7 +279,7 @@ class _Survey:
         return {name: row[: round(signal.duration / self.step) + 1] for name, row in rows.items()}
 
     def _energies(self, rows: Mapping[str, Vector], spans: Sequence[slice]) -> dict[str, Vector]:
-        """Return the energy of each value in each piece, sum y^2 over its samples."""
+        """Return the energies sum y^2 of the values in the pieces."""
         energies: dict[str, Vector] = {}
         seat = application("seat")
         for prefix, point in self.points.items():

@@ -1,4 +1,4 @@
-"""The part of a car that computes its periodic states."""
+"""The part of a car without runs in time: its periodic states, and the diagnosis of a drive."""
 
 from __future__ import annotations
 
@@ -21,7 +21,18 @@ if TYPE_CHECKING:
 
 
 class SteadyCar(BandedCar):
-    """Base of `Car`: periodic states without a start-up."""
+    """Base of `Car`: periodic states without a start-up, and the diagnosis of a drive."""
+
+    def diagnose(self, record: Path | str, speed: float | str | tuple[float, float], **settings: Any) -> Any:
+        """Return a `CarDiagnosis`: worn dampers by a record of a drive, with probabilities; this car is not worn.
+
+        Args:
+            record: measurement file with accelerations at points of the car.
+            speed: speed [km/h], lower and upper speed, or "channel:NAME".
+            settings: `channels` {channel of the car: channel of the file}, `choice`, `inverted`, `free`, `parts`,
+                `count`, `seed`, `progress`; see `vehicle.studies.diagnosis.diagnosis.diagnose_car`.
+        """
+        return HANDED["diagnose_car"](self, record, speed, **settings)
 
     @one_blas_thread()
     def steady(self, source: Signal | Road | Path | str, *, channels: Sequence[str] | None = None) -> Any:

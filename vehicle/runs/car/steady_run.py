@@ -240,7 +240,7 @@ def _extended(histories: dict[str, Vector], size: int, first: int) -> dict[str, 
 
 
 def _histories(car: Car, driven: DrivenCar, state: PeriodicForces, names: Sequence[str]) -> dict[str, Vector]:
-    """Return channels over one period."""
+    """Return the histories of channels in a period."""
     model, laws, interval = driven.model, _laws(car), 1.0 / car.vehicle.solver.record_rate
     asked = set(names) & set(car.vehicle.load_channels)
     loads = car.load_rows if asked else stop_rows(model.matrices, laws)

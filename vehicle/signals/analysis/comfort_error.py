@@ -74,7 +74,7 @@ class Paired(NamedTuple):
 
     Attributes:
         error: standard error, see `wave_error`; of the run alone where the twin explains less than half.
-        waves: waves R_m that the twin does not explain, and that of the phases.
+        waves: waves R_m that the twin does not explain, and the phase wave.
         explained: share of the scatter that the twin explains, 1 - sum |R_m|^2 / sum |C_m|^2 [-]; NaN without a twin.
     """
 
@@ -172,8 +172,8 @@ def overall_waves(lines: Complex) -> Complex:
 def power_waves(value: Vector, rows: Vector) -> Complex:
     """Return the slow variations of a fourth root of a mean of fourth powers, V = (c mean a^4)^(1/4), as in a dose.
 
-    They are the Fourier lines q_m of sum a^4 over the channels, times dV/dq = V/(4 mean a^4), as C_m are those of the
-    mean square: with a flat spectrum near 0 Hz each has the variance of V.
+    The Fourier lines q_m of sum a^4 over the channels take the place of C_m, with the factor dV/dq = V/(4 mean a^4).
+    With a flat spectrum near 0 Hz each has the variance of V.
 
     Args:
         value: V; (r,).

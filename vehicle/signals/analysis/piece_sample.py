@@ -35,25 +35,25 @@ class PieceSample(NamedTuple):
 
     @property
     def drawn(self) -> npt.NDArray[np.bool_]:
-        """Return True for each piece that is not certain."""
+        """Return True for pieces with a probability below 1."""
         return np.asarray(self.probability < 1.0)
 
-    def total(self, values: Vector, known: Vector) -> tuple[float, Vector]:
+    def total(self, values: Vector, sizes: Vector) -> tuple[float, Vector]:
         """Return the total Y and the residuals d_i of the drawn pieces in the order of level, (m,).
 
         Args:
             values: y_s of the chosen pieces; (k,).
-            known: x'_j of all pieces; (n,).
+            sizes: x'_j of all pieces; (n,).
         """
-        drawn, sizes = self.drawn, known[self.chosen]
+        drawn, size = self.drawn, sizes[self.chosen]
         certain = float(np.sum(values[~drawn]))
         if not drawn.any():
             return certain, np.zeros(0)
-        rest = float(np.sum(known) - np.sum(sizes[~drawn]))
-        p, y, x = self.probability[drawn], values[drawn], sizes[drawn]
-        ratio, scale = np.sum(y / p) / np.sum(x / p), rest / np.sum(x / p)
+        remainder = float(np.sum(sizes) - np.sum(size[~drawn]))
+        p, y, x = self.probability[drawn], values[drawn], size[drawn]
+        ratio, scale = np.sum(y / p) / np.sum(x / p), remainder / np.sum(x / p)
         order = np.argsort(self.levels[drawn], kind="stable")
-        return certain + rest * float(ratio), (scale * np.sqrt(1.0 - p) * (y - ratio * x) / p)[order]
+        return certain + remainder * float(ratio), (scale * np.sqrt(1.0 - p) * (y - ratio * x) / p)[order]
 
 
 def half_interval(residuals: Vector) -> float:
@@ -76,17 +76,17 @@ def sample_pieces(sizes: Vector, levels: Vector, count: int, always: npt.NDArray
     """
     certain = np.array(always)
     while True:
-        rest = np.flatnonzero(~certain)
-        total = np.sum(sizes[rest])
+        remainder = np.flatnonzero(~certain)
+        total = np.sum(sizes[remainder])
         probability = count * sizes / total if total > 0.0 else np.ones(sizes.size)
-        if rest.size <= count or not np.any(large := probability[rest] >= 1.0):
+        if remainder.size <= count or not np.any(large := probability[remainder] >= 1.0):
             break
-        certain[rest[large]] = True
-    probability[certain if rest.size > count else slice(None)] = 1.0
-    if rest.size <= count:
+        certain[remainder[large]] = True
+    probability[certain if remainder.size > count else slice(None)] = 1.0
+    if remainder.size <= count:
         return PieceSample(np.arange(sizes.size), probability, levels)
-    # The middle of each of m equal parts of the sum of sizes.
-    order = rest[np.argsort(levels[rest], kind="stable")]
+    # Systematic: the total size has m equal parts, and the piece at the middle of each is drawn.
+    order = remainder[np.argsort(levels[remainder], kind="stable")]
     drawn = order[np.searchsorted(np.cumsum(probability[order]), np.arange(count) + 0.5)]
     chosen = np.sort(np.concatenate([np.flatnonzero(certain), drawn]))
     return PieceSample(chosen, probability[chosen], levels[chosen])

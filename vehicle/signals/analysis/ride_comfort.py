@@ -43,7 +43,7 @@ EXPLAINED = "_explained"
 
 
 def wave_names(name: str) -> tuple[str, ...]:
-    """Return the names of the values C_m of a comfort value and of the wave of the phases: no columns of a table.
+    """Return the names of a comfort value's C_m and of its phase wave, which are no columns of a table.
 
     Args:
         name: `UNWEIGHTED` or `WEIGHTED`, with the prefix of its point; for C_m see

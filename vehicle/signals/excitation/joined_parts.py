@@ -21,7 +21,7 @@ LEAD_S, BLEND_S = SKIP_S, RISE_S
 
 
 def joined_parts(signal: Signal, parts: Sequence[tuple[float, float]]) -> tuple[Signal, list[float]]:
-    """Return the joined signal and the time at which each part begins in it [s].
+    """Return the joined signal and the start of each part [s].
 
     Args:
         signal: plates without slopes of their own.
@@ -30,13 +30,13 @@ def joined_parts(signal: Signal, parts: Sequence[tuple[float, float]]) -> tuple[
     step = signal.timestep
     lead, fade = round(LEAD_S / step), round(BLEND_S / step)
     segments: list[list[int]] = []
-    places: list[int] = []
+    starts: list[int] = []
     length = 0
     for begin, end in ((round(begin / step), round(end / step)) for begin, end in parts):
         # A part that begins within the lead-in of the next one, or before, continues.
         if not segments or begin - lead >= segments[-1][1]:
             segments.append([begin - lead, begin - lead])
-        places.append(length + begin - segments[-1][1])
+        starts.append(length + begin - segments[-1][1])
         length += end - segments[-1][1]
         segments[-1][1] = end
     rise = half_cosine_at(np.asarray(np.arange(fade) * step), BLEND_S)
@@ -60,5 +60,5 @@ def joined_parts(signal: Signal, parts: Sequence[tuple[float, float]]) -> tuple[
             displacement=dict(zip(signal.displacement, rows, strict=True)),
             profile={},
         ),
-        [place * step for place in places],
+        [start * step for start in starts],
     )

@@ -83,7 +83,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, points: CarTab
     Args:
         name: name of the new car.
         source: template: name of a shipped car, or a vehicle file.
-        stated: numbers of the new car; all others are those of its class or of the template, or estimated.
+        stated: numbers of the new car; all others come from its class or the template, or are estimated.
         points: table of the car with points, curves and numbers of parts.
 
     Returns:

@@ -192,7 +192,7 @@ SAME_PARAMETER = (
 """Numbers of an axle of which one sets a part: spring, damper, tyre."""
 
 LOADS_AGREE = 5e-4
-"""Largest deviation of the sum of two axle loads from the kerb mass, as a share of it: half of the promised 0.1 %."""
+"""Largest deviation of the sum of two axle loads from the kerb mass, divided by it: half of the promised 0.1 %."""
 
 NOT_NUMBERS = ("tyre_size", "load", "inertia", "car_class", "of_class", "of_load")
 """Fields that are no numbers of a car."""
@@ -241,7 +241,7 @@ def stated_numbers(
 
 
 def _replaced() -> list[tuple[str, ...]]:
-    """Return groups of numbers of which a typed one replaces all others of a table."""
+    """Return groups of numbers: a typed number replaces the others of its group in a table."""
     loads = ("cog_x", "front_axle_load", "rear_axle_load")
     parts = [tuple(f"{name}_{axle}" for name in names) for names in SAME_PARAMETER for axle in AXLES]
     return [loads, ("tyre_radius", "tyre_free_radius", "tyre_size"), ("pitch_frequency", "pitch_inertia"), *parts]

@@ -43,7 +43,7 @@ HEADS = (
     "{}standard_error_of_difference [m/s2]",
     "{}half_width_95 [m/s2]",
 )
-"""Heads of the columns of a comfort value; those of the weighted value have its name before them."""
+"""Heads of the columns of a comfort value; the weighted value adds its name in front."""
 
 PER_VALUE = 2 + len(wave_names(UNWEIGHTED))
 """Numbers of a comfort value in a row: value, relative error and C_m."""

@@ -130,7 +130,7 @@ Chosen = dict[str, tuple[Vector3, Point]]
 
 
 def _by_axle(content: Statements, listed: list[tuple[str, Point]], scale, placed: PlacedPoints):  # type: ignore[no-untyped-def]
-    """Return the points of one side of each axle, and this side: by axle, ({point: (coordinates, row)}, side)."""
+    """Return the side and the points of each axle: by axle, ({point: (coordinates, row)}, side)."""
     named = {point.name.axle for _, point in listed if point.name.axle}
     default = ""
     if any(not point.name.axle for _, point in listed):

@@ -102,7 +102,7 @@ class NameWords:
     side: str
 
     def has(self, *terms: str) -> bool:
-        """True if all words occur."""
+        """Return True if the name contains all terms."""
         return set(terms) <= set(self.terms)
 
 

@@ -120,7 +120,7 @@ def _named(channel: Channel) -> _Named | None:
 
 
 def _frequencies(path: Path, frfs: Sequence[_Named]) -> Vector:
-    """Return the frequencies [Hz], (m,), that all FRFs must share."""
+    """Return the common frequencies of the FRFs [Hz]; (m,)."""
     frequency = frfs[0].channel.axis
     for named in frfs:
         axis = named.channel.axis

@@ -26,7 +26,7 @@ LEAST_LINES = 20
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RigidRange:
-    """Range of frequencies [Hz] with the resonances that limit it; None for the end of the file."""
+    """Frequency range [Hz] and the resonances at its ends; None for the end of the file."""
 
     low: float
     high: float

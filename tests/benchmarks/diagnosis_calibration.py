@@ -1,0 +1,342 @@
+"""Does the probability of a diagnosis hold? Drives with known dampers, of cars inside and outside the prior.
+
+    python -m tests.benchmarks.diagnosis_calibration [inside N] [outside N] [mujoco N] [healthy N] [wrong N]
+
+Without arguments all of them run. One training of drives with a phone at the seat rail, and with eight sensors at
+wheels and strut tops, serves all: the sedan at 79 km/h for 39 s.
+
+inside: cars of the prior, few on each road: ranks of the true factors, 90 % intervals, AUC for "below 0.6", road class.
+outside: springs, stabilizers and mounts +-30 % of each side apart, and other laws than those of the training.
+mujoco: records of the MuJoCo engine, other roads (constant amplitudes of the lines), empty and laden.
+healthy: how many of 4 N healthy dampers are called worn, at the threshold that finds 80 % of dampers at half force.
+wrong: what another car, speed, unit, axis, engine or road gives: refused, widened, or a wrong statement.
+"""
+
+import sys
+import time
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import scipy
+
+from vehicle import Car, road
+from vehicle.errors import DataError
+from vehicle.signals.analysis.road_level import CLASSES
+from vehicle.studies.diagnosis.car_diagnosis import SURE, WORN
+from vehicle.studies.diagnosis.diagnosis import Diagnostics
+from vehicle.studies.diagnosis.drawn_car import CarPrior, DrawnCar
+from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts
+from vehicle.studies.diagnosis.simulated_drives import RATE, drawn_road, drive
+
+WHEELS = ("fr", "fl", "rr", "rl")
+"""In the order of the car."""
+PHONE = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")
+EIGHT = tuple(f"{point}_{wheel}_acc_z" for point in ("knuckle", "damper_top") for wheel in WHEELS)
+SPEED, SECONDS = 22.0, 39.0
+SEED = 20260063
+"""Seed of the drives with known dampers; the training has another."""
+
+
+def both(car, speed=SPEED, count=None):
+    """Diagnostics of a car with the phone and with the eight sensors, from the same drives."""
+    phone = Diagnostics.of(car, PHONE, (speed, speed), SECONDS, highest=40.0, count=count)
+    assert phone.at_wheels is not None
+    swapped = replace(phone.drives, features=phone.drives.features[::-1])
+    eight = replace(phone, channels=EIGHT, drives=swapped, learned=phone.at_wheels)
+    return {"phone": phone, "eight": eight}
+
+
+def record_of(samples, channels, rate=RATE):
+    """Record of samples (channels, n), all of which are used."""
+    record = DriveRecord(name="made", channels=tuple(channels), samples=samples, rate=rate, highest=40.0,
+                         speeds=(SPEED, SPEED))  # fmt: skip
+    count = samples.shape[1]
+    return record, Parts(spans=((0, count),), seconds=count / rate, speeds=(SPEED, SPEED), left_out={})
+
+
+def judged(diagnostics, samples, rate=RATE):
+    """Diagnosis of samples of the phone, then the eight sensors; None where it is refused."""
+    found = {}
+    for name, each in diagnostics.items():
+        chosen = samples[: len(PHONE)] if name == "phone" else samples[len(PHONE) :]
+        try:
+            found[name] = each.diagnosis(*record_of(chosen, each.channels, rate))
+        except DataError:
+            found[name] = None
+    return found
+
+
+class Score:
+    """Truths against diagnoses of one set of sensors."""
+
+    def __init__(self, title):
+        self.title, self.truth, self.rank, self.inside, self.worn, self.deviation = title, [], [], [], [], []
+        self.refused, self.classes, self.widened = 0, [], []
+
+    def add(self, diagnosis, truth, level=None):
+        if diagnosis is None:
+            self.refused += 1
+            return
+        posteriors = [diagnosis.damper(wheel) for wheel in WHEELS]
+        self.truth.append(truth)
+        self.rank.append([each.below(true) for each, true in zip(posteriors, truth, strict=True)])
+        ends = [(each.quantile(0.05), each.quantile(0.95)) for each in posteriors]
+        self.inside.append([low <= true <= high for (low, high), true in zip(ends, truth, strict=True)])
+        self.worn.append([each.below(WORN) for each in posteriors])
+        self.deviation.append([each.mean - true for each, true in zip(posteriors, truth, strict=True)])
+        self.widened.append(diagnosis.widened)
+        if level is not None:
+            right = min(CLASSES, key=lambda letter: abs(np.log(CLASSES[letter] / level)))
+            self.classes.append(diagnosis.road.letter == right)
+
+    def show(self):
+        truth, worn = np.array(self.truth), np.array(self.worn)
+        below = truth < WORN
+        auc = [_auc(worn[:, k], below[:, k]) for k in range(len(WHEELS))]
+        p = [scipy.stats.chisquare(np.histogram(np.array(self.rank)[:, k], 10, (0.0, 1.0))[0]).pvalue for k in range(4)]
+        sure, clear = worn >= SURE, worn <= 1.0 - SURE
+        print(
+            f"{self.title}: n {len(truth)}, refused {self.refused}, widened {np.mean(np.array(self.widened) > 1.0):.2f}"
+            f"; 90 % holds {_list(np.mean(self.inside, axis=0))}; p of ranks {_list(p)}; "
+            f"RMS {_list(np.sqrt(np.mean(np.square(self.deviation), axis=0)))}; AUC {_list(auc)}, all "
+            f"{_auc(worn.ravel(), below.ravel()):.3f}",
+            flush=True,
+        )
+        print(
+            f"    called worn {sure.sum()}, of these wrong {(sure & ~below).sum()}; called good {clear.sum()}, of "
+            f"these wrong {(clear & below).sum()}"
+            + (f"; class right {np.mean(self.classes):.2f} of {len(self.classes)}" if self.classes else ""),
+            flush=True,
+        )
+
+
+def _auc(score, positive):
+    ranks, count = scipy.stats.rankdata(score), int(positive.sum())
+    return float((ranks[positive].sum() - count * (count + 1) / 2) / (count * (len(ranks) - count)))
+
+
+def _list(values):
+    return " ".join(f"{value:.3f}" for value in values)
+
+
+def drawn(prior, count, rng, on_road=4):
+    """Yield samples, true factors and road of drives of drawn cars, `on_road` of them on each road."""
+    for _ in range(-(-count // on_road)):
+        cars = [prior.with_dampers(prior.draw(rng), rng) for _ in range(on_road)]
+        where = drawn_road(prior.car, SPEED, rng)
+        histories = drive(cars, where, prior.car, (*PHONE, *EIGHT), SECONDS, rng)
+        for car, samples in zip(cars, histories, strict=True):
+            yield samples, [car.values[f"damper {wheel}"] for wheel in WHEELS], where
+
+
+def inside(diagnostics, prior, count):
+    scores = {name: Score(f"inside, {name}") for name in diagnostics}
+    for samples, truth, where in drawn(prior, count, np.random.default_rng(SEED)):
+        for name, found in judged(diagnostics, samples).items():
+            scores[name].add(found, truth, where.level)
+    for score in scores.values():
+        score.show()
+
+
+def other_car(car, rng, chosen=None):
+    """A car outside the prior and its factors: other laws, each spring, stabilizer and mount +-30 % on each side."""
+    factors = dict(zip(WHEELS, rng.uniform(0.3, 1.15, 4) if chosen is None else chosen, strict=True))
+    changes: dict[str, Any] = {}
+    composition = car.vehicle.composition
+    for damper in composition.dampers:
+        instance, wheel = damper.path.partition(".")[0], damper.name.removeprefix("damper_")
+        path = f"{instance}.{'left' if wheel.endswith('l') else 'right'}.damper"
+        factor, law = float(factors[wheel]), damper.law
+        if law.viscous_law == "table":
+            # Progressive or degressive, with the same force at 0.13 m/s.
+            bend = rng.uniform(-0.25, 0.25) if rng.random() < 0.7 else 0.0
+            shape = [(max(abs(v), 1e-3) / 0.13) ** bend for v in law.velocity]
+            changes[f"{path}.force"] = [factor * f * s for f, s in zip(law.force, shape, strict=True)]
+        elif rng.random() < 0.5:
+            changes[f"{path}.viscous"] = factor * law.viscous
+        else:
+            # Below 0.065 m/s 1.7 times as steep as above, with the same force at 0.13 m/s.
+            slope = factor * law.viscous / 1.35
+            changes |= {f"{path}.viscous_law": "degressive", f"{path}.viscous": slope,
+                        f"{path}.degressive_viscous": 1.7 * slope, f"{path}.degressive_velocity": 0.065}  # fmt: skip
+        friction = float(rng.uniform(0.6, 1.6)) * law.coulomb_friction
+        changes[f"{path}.coulomb_friction"] = friction
+        if (kind := rng.random()) < 0.35:
+            changes |= {f"{path}.friction_law": "stribeck", f"{path}.stribeck_friction": 1.5 * friction,
+                        f"{path}.stribeck_velocity": 0.01, f"{path}.stribeck_exponent": 1.0}  # fmt: skip
+        elif kind < 0.5:
+            changes |= {f"{path}.friction_law": "presliding", f"{path}.presliding_stiffness": 2e6}
+    for connection in composition.connections:
+        if connection.law is None:
+            continue
+        tyre, wheel = connection.name.startswith("tyre_"), connection.name[-3:]
+        instance, _, rest = connection.path.partition(".")
+        side = {"_l": ".left", "_r": ".right"}.get(wheel[0] + wheel[2:], "") if wheel[0] == "_" else ""
+        share = rng.uniform(0.87, 1.13) if tyre else rng.uniform(0.7, 1.3)
+        scaled = [(share if axis == 2 or not tyre else 1.0) * k for axis, k in enumerate(connection.law.stiffness)]
+        changes[f"{instance}{side}.{rest}.stiffness"] = scaled
+    for path, kind in composition.kinds.items():
+        key = {"MainSpring": "stiffness", "Stabilizer": "torsional_stiffness"}.get(kind.__name__)
+        if key:
+            changes[f"{path}.{key}"] = car[f"{path}.{key}"].value * float(rng.uniform(0.7, 1.3))
+    if rng.random() < 0.5:
+        changes |= {"load.trunk.mass": float(rng.uniform(50.0, 220.0)), "load.trunk.at": [3.3, 0.1, 0.9]}
+    changes |= {"load.driver.mass": float(rng.uniform(50.0, 95.0)), "load.driver.at": [1.9, -0.36, 0.8]}
+    return car.with_(changes), [float(factors[wheel]) for wheel in WHEELS]
+
+
+def as_drawn(car):
+    """A car in the form of the batch engine."""
+    laws = [damper.law for damper in car.vehicle.composition.dampers]
+    return DrawnCar(values={}, poles=car.poles, dampers=laws, tyre_load=car.static.tyre_load)
+
+
+def others(car, count, rng, factors=lambda number: None, on_road=4):
+    """Yield samples, factors and road of drives of cars outside the prior by the batch engine."""
+    rolling = car.with_({"driving.speed": SPEED})
+    for number in range(-(-count // on_road)):
+        made = [other_car(rolling, rng, factors(number * on_road + k)) for k in range(on_road)]
+        where = drawn_road(car, SPEED, rng)
+        histories = drive([as_drawn(each) for each, _ in made], where, rolling, (*PHONE, *EIGHT), SECONDS, rng)
+        for (_, truth), samples in zip(made, histories, strict=True):
+            yield samples, truth, where
+
+
+def outside(diagnostics, car, count):
+    scores = {name: Score(f"outside, {name}") for name in diagnostics}
+    for samples, truth, where in others(car, count, np.random.default_rng(SEED + 1)):
+        for name, found in judged(diagnostics, samples).items():
+            scores[name].add(found, truth, where.level)
+    for score in scores.values():
+        score.show()
+
+
+def by_mujoco(diagnostics, car, count):
+    rng = np.random.default_rng(SEED + 2)
+    scores = {name: Score(f"MuJoCo, {name}") for name in diagnostics}
+    for number in range(count):
+        made, truth = other_car(car, rng)
+        letter = "ABCD"[number % 4]
+        ridden = road(letter, 3.6 * SPEED, duration=SECONDS + 4.0, seed=500 + number, period="record")
+        run = made.run(ridden, channels=(*PHONE, *EIGHT))
+        samples = np.array([run[name] for name in (*PHONE, *EIGHT)])[:, run.time >= 3.5]
+        for name, found in judged(diagnostics, samples, 1.0 / (run.time[1] - run.time[0])).items():
+            scores[name].add(found, truth, CLASSES[letter])
+    for score in scores.values():
+        score.show()
+
+
+def healthy(diagnostics, car, count):
+    """False alarms on healthy cars at the threshold that finds 80 % of the cars with one damper at half its force."""
+    rng = np.random.default_rng(SEED + 3)
+
+    def good(number):
+        return rng.uniform(0.85, 1.15, 4)
+
+    def at_half(number):
+        return np.where(np.arange(4) == number % 4, 0.5, rng.uniform(0.85, 1.15, 4))
+
+    found: dict[tuple[str, str], list[float]] = {}
+    for kind, factors in (("good", good), ("half", at_half)):
+        for number, (samples, _, _) in enumerate(others(car, count, rng, factors)):
+            for name, diagnosis in judged(diagnostics, samples).items():
+                worn = [0.0] * 4 if diagnosis is None else [diagnosis.worn(wheel) for wheel in WHEELS]
+                found.setdefault((name, kind), []).append(worn[number % 4] if kind == "half" else max(worn))
+    for name in diagnostics:
+        threshold = float(np.quantile(found[name, "half"], 0.2))
+        alarms = int(np.sum(np.array(found[name, "good"]) >= threshold))
+        sure = [int(np.sum(np.array(found[name, kind]) >= SURE)) for kind in ("good", "half")]
+        print(
+            f"healthy, {name}: {alarms} of {len(found[name, 'good'])} healthy cars alarm at P {threshold:.2f}, which "
+            f"finds 80 % of {len(found[name, 'half'])} dampers at half force; at P {SURE}: {sure[0]} and {sure[1]}",
+            flush=True,
+        )
+
+
+def wrong(diagnostics, car, count):
+    """A table of wrong inputs, `count` records each."""
+    prior, rng = CarPrior(car, SPEED), np.random.default_rng(SEED + 4)
+    channels = (*PHONE, *EIGHT)
+    time = np.arange(round(SECONDS * RATE) + 1) / RATE
+    engine = sum(np.sin(2.0 * np.pi * f * time) for f in (13.0, 26.0, 39.0))
+
+    def of_car(other, **changes):
+        rolling = other.with_({"driving.speed": SPEED})
+        where = replace(drawn_road(other, SPEED, rng), **changes)
+        return drive([as_drawn(rolling)], where, rolling, channels, SECONDS, rng)[0], [1.0] * 4
+
+    def of_prior(**changes):
+        drawn_car = prior.with_dampers(prior.draw(rng), rng)
+        where = replace(drawn_road(car, SPEED, rng), **changes)
+        samples = drive([drawn_car], where, prior.car, channels, SECONDS, rng)[0]
+        return samples, [drawn_car.values[f"damper {wheel}"] for wheel in WHEELS]
+
+    def changed(change):
+        samples, truth = of_prior()
+        return change(samples.copy()), truth
+
+    def exchanged(samples):
+        # Axes x and z of the phone; front and rear wheels.
+        return samples[[2, 1, 0, 5, 6, 3, 4, 9, 10, 7, 8]]
+
+    def upside_down(samples):
+        samples[[2, 3, 4, 5, 6]] *= -1.0
+        return samples
+
+    van = {"body.mass": 1.5 * car["body.mass"].value} | {
+        f"{axle}.main_spring.stiffness": 1.7 * car[f"{axle}.main_spring.stiffness"].value for axle in ("front", "rear")
+    }
+    kinds = {
+        "the right input": of_prior,
+        "focus_road for the sedan": lambda: of_car(Car.load("focus_road")),
+        "a van for the sedan": lambda: of_car(car.with_(van)),
+        "100 km/h given as 79": lambda: of_prior(speed=100.0 / 3.6),
+        "60 km/h given as 79": lambda: of_prior(speed=60.0 / 3.6),
+        "gravity in z": lambda: changed(lambda samples: samples + 9.81),
+        "g taken for m/s2": lambda: changed(lambda samples: samples / 9.81),
+        "x and z, front and rear exchanged": lambda: changed(exchanged),
+        "z upside down": lambda: changed(upside_down),
+        "engine idles": lambda: changed(lambda samples: 0.01 * samples + 0.3 * engine),
+        "engine orders in the drive": lambda: changed(lambda samples: samples + 0.3 * engine),
+        "class E": lambda: of_prior(level=CLASSES["E"]),
+        "class F": lambda: of_prior(level=CLASSES["F"]),
+    }
+    print("wrong inputs: refused, widened, statements, of these wrong (phone; eight)")
+    for title, make in kinds.items():
+        counts = {name: np.zeros(4, dtype=int) for name in diagnostics}
+        for _ in range(count):
+            samples, truth = make()
+            for name, found in judged(diagnostics, samples).items():
+                counts[name] += _outcome(found, truth)
+        print(f"  {title}: n {count}; " + "; ".join(" ".join(map(str, each)) for each in counts.values()), flush=True)
+
+
+def _outcome(found, truth):
+    """Refused, widened by a fifth, and statements on single dampers, of these wrong."""
+    if found is None:
+        return np.array([1, 0, 0, 0])
+    said = [(found.worn(wheel), true < WORN) for wheel, true in zip(WHEELS, truth, strict=True)]
+    sure = [(p >= SURE) != below for p, below in said if p >= SURE or p <= 1.0 - SURE]
+    return np.array([0, found.widened > 1.2, len(sure), sum(sure)])
+
+
+def main(words):
+    """Run the parts that are named, with their numbers of cars."""
+    numbers = {"inside": 400, "outside": 200, "mujoco": 24, "healthy": 100, "wrong": 3}
+    if words:
+        numbers = {name: int(count) for name, count in zip(words[::2], words[1::2], strict=True)}
+    started = time.process_time()
+    car = Car.load("sedan")
+    diagnostics = both(car)
+    print(f"training: {len(diagnostics['phone'].drives.values)} drives of {SECONDS:g} s in "
+          f"{time.process_time() - started:.1f} s of processor time", flush=True)  # fmt: skip
+    if "inside" in numbers:
+        inside(diagnostics, CarPrior(car, SPEED), numbers["inside"])
+    for name, part in {"outside": outside, "mujoco": by_mujoco, "healthy": healthy, "wrong": wrong}.items():
+        if name in numbers:
+            part(diagnostics, car, numbers[name])
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
