@@ -72,6 +72,21 @@ def test_thirty_tests_with_noise_of_five_percent(folder):
     )
 
 
+def test_the_errors_contain_the_scatter_of_sensitivities(folder, engine):
+    """Noise of 5 %, and sensitivities of the accelerometers that scatter by 2 %, common to all FRFs of an output."""
+    outputs = np.unique([name.split("/")[0] for name in engine.names], return_inverse=True)[1]
+    ratios = []
+    for seed in range(20):
+        gains = 1.0 + 0.02 * np.random.default_rng(seed).standard_normal(outputs.max() + 1)
+        body = HungBody(seed=seed)
+        data = read_accelerances(write_test(folder / "gains.uff", body, LINES), None, None, *FRAME)
+        fit = fit_rigid_body(replace(data, response=data.response * gains[outputs][:, None]))
+        ratios.append((fit.values() - true_values(body)) / fit.errors)
+    # The RMS of 20 values with a standard deviation of 1 is below 1.4 in 99.9 %.
+    rms = np.sqrt(np.mean(np.square(ratios), axis=0))
+    assert rms.max() < 1.4, rms
+
+
 def test_a_rigid_body_without_noise_is_exact(folder):
     body = HungBody(first_elastic=1e4, support=1.0, rubber=0.0)
     path = write_test(folder / "exact.uff", body, np.linspace(10.0, 100.0, 91), noise=0.0)
@@ -148,6 +163,7 @@ REFUSED = {
     "a single force": (lambda d: chosen(d, lambda n: n.endswith("/1+X")), None, "add forces in other directions"),
     "points on a line": (lambda d: replace(d, place=d.place * [1.0, 0.0, 0.0]), None, "do not determine"),
     "sensor with the wrong sign": (flipped, None, "the worst is 4[+]Z/"),
+    "all signs wrong": (lambda d: replace(d, response=-d.response), None, "have a mass of -.* kg"),
     "elastic mode in the range": (lambda d: d, (10.0, 160.0), "contains a resonance at 153 Hz"),
     "elastic mode near the range": (lambda d: d, (10.0, 130.0), "the elastic motion is"),
     "support modes in the range": (lambda d: d, (2.0, 70.0), "contains a resonance at [234] Hz"),

@@ -8,9 +8,11 @@ from tests.benchmarks.known_dampers import FINE, random_motion
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.signals.records.choice import Choice
+from vehicle.studies.dampers.conditions import with_setting
 from vehicle.studies.dampers.damper_force import Motion, force_and_slopes
 from vehicle.studies.dampers.damper_law import DamperLaw
 from vehicle.studies.dampers.damper_setting import Setting
+from vehicle.studies.dampers.damper_test import read_test
 from vehicle.studies.dampers.fitted_damper import fit_damper
 from vehicle.studies.dampers.over_condition import control_lines, setting_values
 
@@ -100,6 +102,20 @@ def test_a_switched_damper_gives_its_law_and_its_switching_time(tmp_path):
     for damping, share in ((low, 0.0), (high, 1.0)):
         force = (900.0 + 900.0 * share) * v + (60.0 + 700.0 * share) * np.tanh(v / 0.02)
         assert damping == pytest.approx(np.sum(force * v) / np.sum(v**2), rel=0.03)
+
+
+def test_what_was_before_the_record_does_not_count(tmp_path):
+    """A record that begins 2 ms after a switch, while the damper still follows the current before."""
+    record(tmp_path / "switched.csv", 1.5)
+    table = np.loadtxt(tmp_path / "switched.csv", delimiter=",", skiprows=1)
+    begin = 200 + np.flatnonzero(np.diff(table[200:, 4]))[0] + 2
+    np.savetxt(tmp_path / "cut.csv", table[begin:], delimiter=",", header=HEAD, comments="", fmt="%.7g")
+    (test,) = with_setting([read_test(tmp_path / "cut.csv", Choice(), conditions={"current": "channel:current"})])
+    shares = test.setting.shares(LAG, 0.0, 1.0)[0]
+    time, current = table[:, 0], table[:, 4]
+    exact = Setting(name="current", time=time, values=current, lowest=0.0, highest=1.0).shares(LAG, 0.0, 1.0)[0][begin:]
+    off = np.abs(shares - exact)
+    assert off.max() > 0.5 and off[test.settled].max() < 1e-4
 
 
 def test_two_changing_conditions_are_refused_and_noise_is_a_constant(tmp_path):

@@ -21,6 +21,11 @@ ENDS = 1.0, 99.0
 """Percentiles of all samples that count as lowest and highest condition: a controlled current overshoots."""
 
 
+BEGIN = 0.1
+"""Time [s] at the begin of a test whose condition changes that is not fitted: the lag remembers what was before. After
+five lags of 20 ms 0.7 % of it is left."""
+
+
 def by_conditions(tests: Sequence[DamperTest]) -> dict[tuple[tuple[str, float], ...], list[DamperTest]]:
     """Return the tests in groups with the same conditions, sorted by them."""
     groups: dict[tuple[tuple[str, float], ...], list[DamperTest]] = {}
@@ -53,7 +58,8 @@ def with_setting(tests: Sequence[DamperTest]) -> list[DamperTest]:
         dataclasses.replace(
             test, conditions={key: value for key, value in test.conditions.items() if key != name},
             notices=(*test.notices, text), setting=Setting(name=name, time=test.time, values=test.traces[name],
-            lowest=lowest, highest=highest),
+            lowest=lowest, highest=highest), waveform=test.waveform._replace(
+            settled=test.settled & (test.time >= test.time[0] + BEGIN)),
         )
         for test in tests
     ]  # fmt: skip

@@ -82,8 +82,9 @@ class RigidFit:
 def fit_rigid_body(data: Accelerances, band: tuple[float, float] | None = None) -> RigidFit:
     """Fit the mass properties of a body to its accelerances.
 
-    Errors: the scatter of each accelerance about a smooth curve, raised by what a rigid body leaves over of these
-    curves (lack of fit). Errors common to all accelerances (sensitivity of the force sensor) are not contained.
+    Errors: the largest of the scatter of each accelerance about a smooth curve, raised by what a rigid body leaves over
+    of these curves (lack of fit), and of the scatter between outputs and between inputs, whose gains, directions and
+    positions are off. Errors common to all accelerances (sensitivity of the force sensor) are not contained.
 
     Args:
         band: range of frequencies [Hz]; None chooses it, see `rigid_range`.
@@ -157,7 +158,9 @@ def _result(data: Accelerances, fitted: SolvedProblem, chosen: RigidRange, centr
         )
     units = size ** np.array([0.0, 1, 1, 1, 2, 2, 2, 2, 2, 2])
     values, slopes = _about_cog(fitted.parameters[:10] * units)
-    errors = np.sqrt(np.diag(slopes @ (fitted.covariance[:10, :10] * np.outer(units, units)) @ slopes.T))
+    turned = slopes * units
+    variances = np.einsum("pa,kab,pb->kp", turned, fitted.covariance[:, :10, :10], turned)
+    errors = np.sqrt(variances.max(axis=0))
     tensor = inertia_tensor(**dict(zip(NAMES[4:], values[4:].tolist(), strict=True)))
     moments = np.isin(NAMES, ("mass", "ixx", "iyy", "izz"))
     weak = moments & ~(errors < _LARGEST_ERROR * values)

@@ -12,6 +12,7 @@ import numpy as np
 import scipy
 
 from vehicle.arrays import Vector
+from vehicle.errors import DataError
 
 _NOISE_FLOOR = 0.01
 """Minimum standard error of a line over the RMS of all accelerances [-]: the transverse sensitivity of accelerometers
@@ -53,7 +54,8 @@ class SolvedProblem:
 
     Attributes:
         parameters: m, m c, J, then the upper triangle of K; (31,).
-        covariance: of the parameters, with the lack of fit, (31, 31).
+        covariance: of the parameters from the lack of fit, from the scatter between outputs, and between inputs,
+            (3, 31, 31).
         support: natural frequencies of the rigid body on K [Hz], rising, (6,).
         misfits: RMS of what the rigid body does not explain in each accelerance [m/s2/N], (n,).
         misfit, scatter: RMS of it, and of the random scatter, over the RMS of the accelerances [-].
@@ -80,6 +82,9 @@ def solved(frequency: Vector, response: Vector, rows: Vector) -> SolvedProblem:
         frequency: frequencies [Hz], (m,).
         response: real parts [m/s2/N], (n, m).
         rows: rows of output and input, (2, n, 6).
+
+    Raises:
+        DataError: the accelerances have a negative mass.
     """
     squared = (2.0 * np.pi * frequency) ** 2
     count, lines = response.shape
@@ -97,6 +102,11 @@ def solved(frequency: Vector, response: Vector, rows: Vector) -> SolvedProblem:
 
     start = _start(smooth @ np.linalg.inv(mixing).T[:, 0], rows)
     mass = float(start[0])
+    if mass <= 0.0:
+        raise DataError(
+            f"these FRFs have a mass of {mass:.3g} kg, must be above 0; check signs and directions of forces and "
+            "accelerations"
+        )
     scale = mass * np.concatenate([np.ones(10), np.full(21, 0.3 * squared[0])])
 
     def rigid(parameters: Vector) -> tuple[Vector, Vector, Vector]:
@@ -126,7 +136,15 @@ def solved(frequency: Vector, response: Vector, rows: Vector) -> SolvedProblem:
     # Variance of a line, raised by the lack of fit: what the smooth curves contain and the rigid body does not.
     of_lines = float(np.sum((free / deviation) ** 2)) / (count * (lines - 5))
     of_curves = (2.0 * solution.cost - of_lines * count * (lines - 5)) / (3 * count - int(kept.sum()))
-    inverse = (vectors[kept].T / values[kept] ** 2) @ vectors[kept] * max(of_lines, of_curves)
+    inverse = (vectors[kept].T / values[kept] ** 2) @ vectors[kept]
+    covariances = [inverse * max(of_lines, of_curves)]
+    # Errors of gain, direction and position are common to all accelerances of a sensor, or of a force: the scatter of
+    # their sums (sandwich estimator for clusters; Liang and Zeger, Biometrika 73 (1986) 13).
+    scores = solution.fun.reshape(count, 1, lines) @ (scale * solution.jac).reshape(count, lines, 31)
+    for end in rows:
+        which = np.unique(end.round(9), axis=0, return_inverse=True)[1].ravel()
+        sums = np.array([scores[which == number, 0].sum(axis=0) for number in range(which.max() + 1)]) @ inverse
+        covariances.append(sums.T @ sums * len(sums) / max(len(sums) - 1, 1))
     left = response - rigid(parameters)[0]
     bending = (left @ elastic) @ elastic.T
     misfits = np.sqrt(np.mean((((left - bending) @ basis) @ basis.T) ** 2, axis=1))
@@ -137,7 +155,7 @@ def solved(frequency: Vector, response: Vector, rows: Vector) -> SolvedProblem:
     squares = np.sort(np.linalg.eigvals(np.linalg.solve(inertia, stiffness)).real)
     return SolvedProblem(
         parameters=parameters,
-        covariance=inverse * np.outer(scale, scale),
+        covariance=np.array(covariances) * np.outer(scale, scale),
         support=np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi),
         misfits=misfits,
         misfit=float(np.sqrt(np.mean(misfits**2))) / level,
