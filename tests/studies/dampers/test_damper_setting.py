@@ -111,6 +111,7 @@ def test_what_was_before_the_record_does_not_count(tmp_path):
     begin = 200 + np.flatnonzero(np.diff(table[200:, 4]))[0] + 2
     np.savetxt(tmp_path / "cut.csv", table[begin:], delimiter=",", header=HEAD, comments="", fmt="%.7g")
     (test,) = with_setting([read_test(tmp_path / "cut.csv", Choice(), conditions={"current": "channel:current"})])
+    assert test.setting is not None
     shares = test.setting.shares(LAG, 0.0, 1.0)[0]
     time, current = table[:, 0], table[:, 4]
     exact = Setting(name="current", time=time, values=current, lowest=0.0, highest=1.0).shares(LAG, 0.0, 1.0)[0][begin:]
