@@ -74,7 +74,7 @@ class DiagnoseSettings(Settings):
         metavar="N",
     )
     seed: int = setting(
-        "seed of the simulated drives; default: %(default)s", 1, type=int, within="[0, 1000000]", metavar="N"
+        "seed of the simulated drives; default: %(default)s", 1, type=int, within="[0, inf)", metavar="N"
     )
 
 

@@ -24,7 +24,7 @@ from vehicle.settings import Settings, part, setting
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("report", "Write findings, figures, moving modes and tables of runs into one HTML file.")
-    setting_options(parser, ReportSettings, "runs", "targets", "levels")
+    setting_options(parser, ReportSettings, "runs", "targets", "level_map")
     measure_option(parser, "report")
     film_options(
         parser,
@@ -65,7 +65,7 @@ class ReportSettings(Settings):
         "and change",
         metavar="FILE.toml",
     )
-    levels: str = setting(
+    level_map: str = setting(
         "add the FRFs at every level and the level at which each damper slips, for this motion of the plates: heave, "
         "pitch, roll, warp, a wheel, or shares as fl=1,fr=1@90",
         "",
@@ -100,7 +100,7 @@ def _job(settings: ReportSettings, console: Console) -> None:
         progress=console.progress("report    "),
         targets=settings.targets,
         measure=settings.measure,
-        levels=settings.levels,
+        levels=settings.level_map,
         notice=lambda text: console.say(f"note        {text}"),
         film=film,
         author=settings.author,

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.arrays import Vector
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import in_order
 from vehicle.runs.car import Car
@@ -139,8 +140,8 @@ class Diagnostics:
         unlike = self.learned.unlikeness(features)
         if not unlike <= UNLIKE:
             raise DataError(
-                f"{record.name}: cannot be a drive of {self.car} as described: it is {unlike:.2g} standard deviations "
-                f"more unlike {len(self.drives.values)} simulated drives than these are unlike each other, but at most "
+                f"{record.name}: cannot be a drive of {self.car} as described: it is {number(unlike, 2)} standard "
+                f"deviations more unlike {len(self.drives.values)} simulated drives than these are unlike each other, but at most "
                 f"{UNLIKE:g} are accepted; farthest is {self._farthest(features)}. Check the car, --speed, the "
                 "channels of --map with their directions and units, and that the engine does not shake the car"
             )
@@ -192,7 +193,7 @@ class Diagnostics:
         densities = len(self.channels) * Bands.COUNT
         apart = np.abs((features - self.learned.center) / self.learned.scale)[:densities]
         channel, band = divmod(int(np.argmax(apart)), Bands.COUNT)
-        return f"{self.channels[channel]}, {Bands.middles(self.highest)[band]:.2g} Hz"
+        return f"{self.channels[channel]}, {number(Bands.middles(self.highest)[band], 2)} Hz"
 
 
 def wheel_sensors(car: Car) -> list[str]:

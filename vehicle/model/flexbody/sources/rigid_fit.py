@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.arrays import Complex, Vector
+from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.model.flexbody.inertia_tensor import components, inertia_tensor, triangle_shortfall
 from vehicle.model.flexbody.mass_properties import MassProperties
@@ -165,7 +166,7 @@ def _result(data: Accelerances, fitted: SolvedProblem, chosen: RigidRange, centr
     moments = np.isin(NAMES, ("mass", "ixx", "iyy", "izz"))
     weak = moments & ~(errors < _LARGEST_ERROR * values)
     if weak.any():
-        shown = ", ".join(f"{NAMES[k]} {values[k]:.3g} ± {errors[k]:.2g}" for k in np.flatnonzero(weak))
+        shown = ", ".join(f"{NAMES[k]} {values[k]:.3g} ± {number(errors[k], 2)}" for k in np.flatnonzero(weak))
         raise DataError(
             f"these FRFs determine {_listed(weak)} too poorly ({shown}; the standard error must be at most "
             f"{_LARGEST_ERROR:.0%}); add forces in other directions and at points further apart, or average more"
