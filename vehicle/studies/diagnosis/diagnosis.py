@@ -140,10 +140,11 @@ class Diagnostics:
         unlike = self.learned.unlikeness(features)
         if not unlike <= UNLIKE:
             raise DataError(
-                f"{record.name}: cannot be a drive of {self.car} as described: it is {number(unlike, 2)} standard "
-                f"deviations more unlike {len(self.drives.values)} simulated drives than these are unlike each other, but at most "
-                f"{UNLIKE:g} are accepted; farthest is {self._farthest(features)}. Check the car, --speed, the "
-                "channels of --map with their directions and units, and that the engine does not shake the car"
+                f"{record.name}: cannot be a drive of {self.car} as described: its spectra are "
+                f"{number(unlike, 2)} standard deviations away from {len(self.drives.values)} simulated drives, "
+                f"but at most {UNLIKE:g} are accepted; farthest is {self._farthest(features)}. Check the car, "
+                "--speed, the channels of --map with their directions and units, and that the engine does not shake "
+                "the car"
             )
         widened = float(np.exp(WIDENING * max(0.0, unlike - USUAL)))
         return CarDiagnosis(
