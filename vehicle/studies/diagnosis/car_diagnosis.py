@@ -203,7 +203,7 @@ class CarDiagnosis:
             f"used: {number(parts.seconds)} s of {self.record} at {speed} in {len(parts.spans)} "
             f"part{'s' * (len(parts.spans) > 1)}{f' (left out: {left_out})' if left_out else ''}, "
             f"{len(self.channels)} channels",
-            f"fit: {100.0 * self.unlikely:.0f} % of {self.drives} simulated drives of {self.car} are at least as "
+            f"fit: of {self.drives} simulated drives of {self.car} {100.0 * self.unlikely:.0f} % are at least as "
             f"unlike the others as this record{widened}",
             *([f"narrower with: {more}"] if more else []),
             f"in no record: {CANNOT}",
