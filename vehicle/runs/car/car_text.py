@@ -44,7 +44,7 @@ def number(value: float | None, decimals: int = 0) -> str:
 
 
 SUPPORT_NOTE = (
-    "anti-dive, anti-lift and anti-squat are those of an axle that takes the whole brake or drive force; with the "
+    "anti-dive, anti-lift and anti-squat: for an axle that takes the whole brake or drive force; with the "
     "shares of the axles: --acceleration -3"
 )
 

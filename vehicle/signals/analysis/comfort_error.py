@@ -180,7 +180,7 @@ def power_waves(value: Vector, rows: Vector) -> Complex:
         rows: histories a of all channels over the evaluated span; (r, channels, n).
 
     Returns:
-        Waves, 0 at rest, and a 0 for that of the phases; (r, WAVES + 1).
+        Waves, 0 at rest, and 0 for the phases; (r, WAVES + 1).
     """
     power = np.sum(rows**4, axis=1)
     lines = np.fft.rfft(power, axis=1)[:, : WAVES + 1]

@@ -97,7 +97,7 @@ def starts_from_larger(law: DamperLaw, larger: DamperFit) -> list[Vector]:
 
 
 def _of_halves(law: DamperLaw, other: DamperFit, of_half: Callable[[DamperFit], list[Vector]]) -> list[Vector]:
-    """Return start values of a law with a changing setting: both halves have their own."""
+    """Return start values of a law with a changing setting: each half has one."""
     previous = dict(zip(other.law.parameters, other.parameters.tolist(), strict=True))
     halves = [other.at_setting(firm) for firm in (False, True)]
     starts = [[half.parameters] if half.law == law.passive else of_half(half) for half in halves]

@@ -1,4 +1,4 @@
-"""Mechanism that a law does not have, from the rest of the force, measured minus fitted.
+"""Mechanism missing in a law, from the residual force, measured minus fitted.
 
 The rest r over the standard deviation of the force, and its product with the direction sgn v, are compared with their
 means in bins of equal numbers of samples. A mechanism explains the share of the variance that its bins take away,
@@ -29,7 +29,7 @@ LEAST = 0.3
 
 
 class Missing(NamedTuple):
-    """Mechanism that the law does not have."""
+    """Mechanism missing in the law."""
 
     name: str  # "gap", "hysteresis", "frequency" or "asymmetry"
     share: float  # of the variance of the rest

@@ -1,4 +1,4 @@
-"""Units in the words of a table: beside the name in a header, or of length in a remark."""
+"""Units in the words of a table: with the name in a header, or of length in a remark."""
 
 import re
 from collections.abc import Iterator

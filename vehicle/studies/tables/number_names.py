@@ -28,7 +28,7 @@ class Quantity:
     """Number of a car.
 
     Attributes:
-        terms: sets of words, one of which its name has.
+        terms: sets of words; the name contains a set.
         optional: further words of its name.
         dimension: powers of kg, m, s, rad.
         sizes: least and largest size of cars [SI units].

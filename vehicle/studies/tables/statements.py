@@ -88,7 +88,7 @@ _BUSHING = re.compile(r"(k|c|d|stiffness|damping)[ _]*([xyz])", re.IGNORECASE)
 _AXLE_TITLE = re.compile(r"\b(front|rear) (axle|suspension|hardpoints)\b|\b(vorder|hinter)achse", re.IGNORECASE)
 _ORIGIN = re.compile(r"\borigin\b|\bursprung\b", re.IGNORECASE)
 _SENTENCE = re.compile(r"\b(is|are|was|were|has|have|ist|sind|hat)\b|\.$", re.IGNORECASE)
-"""Marks of a text that tells of an axle instead of being the title of its rows."""
+"""Marks of a sentence on an axle, which is no title of rows."""
 LONGEST_TITLE = 6
 """Most words of a title that does not begin with the axle or its points."""
 _FIRST = {*AXLES, *SIDES, "hardpoint", "hardpoints", "points", "coordinates"}
@@ -293,7 +293,7 @@ class _Reader:
             self._add_point(row, self._name(row, text), tuple(value for _, value in after), unit or self.unit)  # type: ignore[arg-type]
             return True
         if heads is None and self.placed:
-            # Numbers after the points of an axle and an empty row are those of the car.
+            # Numbers after the points of an axle and an empty row describe the car.
             self._title("")
         if not after:
             joined = next(filter(None, map(WITH_UNIT.fullmatch, row.cells)), None)

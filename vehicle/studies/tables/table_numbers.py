@@ -169,7 +169,7 @@ def _by_the_sum(content: Statements) -> bool | None:
 
 
 def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_sum: bool | None) -> Stated:
-    """Return masses of an axle from those of a wheel, rates of a wheel from those of an axle; by_the_sum: see above."""
+    """Return the numbers of an axle with masses for both wheels and rates for one; by_the_sum: see above."""
     if QUANTITIES[key].dimension in (RATE, DAMPING) and _OF_BOTH_WHEELS.search(f"{row.name.text} {row.note}".lower()):
         return replace(value, value=0.5 * value.value, text=f"1/2 x {value.text}")
     if key not in ("unsprung_mass", "axle_load", "sprung_mass") or row.name.side in ("left", "right"):

@@ -1,4 +1,4 @@
-"""Points as columns, or both axles or sides beside each other, turned into rows of one point each.
+"""Points in columns, or in groups for axles or sides, turned into rows of one point each.
 
 Point,LCA front,LCA rear       ,Front,,,Rear,,             Point,Front x,Front y,Front z,Rear x,Rear y,Rear z
 x [mm],-150,160                Point,x,y,z,x,y,z           LCA front,-150,380,180,2450,380,180
@@ -46,7 +46,7 @@ def _columns(names: Row, block: Sequence[Row]) -> list[Row]:
 
 
 def _groups(head: Row, above: Row | None) -> list[tuple[int, str]]:
-    """Return first column and title of each group x, y, z of a header with groups beside each other."""
+    """Return first column and title of each group x, y, z of a header."""
     found = [_HEAD.fullmatch(name_and_unit(cell)[0]) for cell in head.cells]
     starts = [
         start for start in range(1, len(found) - 2)
@@ -62,7 +62,7 @@ def _groups(head: Row, above: Row | None) -> list[tuple[int, str]]:
 
 
 def _beside(head: Row, block: Sequence[Row], groups: Sequence[tuple[int, str]]) -> list[Row]:
-    """Return the rows of each group below each other, its title before each name."""
+    """Return one row for each point of all groups, with the title in the name."""
     names = tuple(re.sub(r"^\w+[ _]+(?=[xyz]\b)", "", cell, flags=re.IGNORECASE) for cell in head.cells)
     result = [Row(where=head.where, sheet=head.sheet, cells=(names[0], *names[groups[0][0] : groups[0][0] + 3]))]
     for row in block:
