@@ -3,17 +3,10 @@
 import gc
 import os
 import shutil
-import sys
 import tempfile
-from pathlib import Path
 
 # As in the Makefile, before numpy is imported: threads of small matrices only wait for each other.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
-# Where Python keeps no bytecode, as in many containers, each process of a test would compile all modules, for 3 s.
-if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
-    sys.dont_write_bytecode = False
-    sys.pycache_prefix = str(Path(__file__).resolve().parents[1] / ".pytest_cache" / "bytecode")
-    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
 
 import pytest
 
