@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from tests.physics.both_engines import compare_engines
 from tests.validation import validated
 from vehicle.runs.car import Car
-from vehicle.runs.car.road import Road
 
 MASS, STIFFNESS, DAMPING = 600.0, 9e4, 1500.0
 
@@ -77,17 +77,8 @@ def test_transmission_of_four_mounts(car):
 
 
 def test_both_engines_and_energy(car):
-    road = Road("B", speed=60, duration=5, period="record")
-    stepped, run = (car.run(road, engine=engine) for engine in ("mujoco", "reduced"))
-    channels = ("cab_floor_acc_z", "seat_acc_z")
-    validated(
-        "Reduced engine", "RMS of cab floor and seat of a cab on four mounts over MuJoCo, class B",
-        np.array([np.std(run[each]) / np.std(stepped[each]) for each in channels]), 1.0, abs=2e-3,
-        source="second derivation: time integration in MuJoCo",
-    )  # fmt: skip
-    energies = stepped.recording.statistics.energies
-    assert energies is not None
-    validated(
-        "Bushings, springs and stops", "cab on four mounts: work, less stored and dissipated energy",
-        energies.residual, 0.0, abs=3e-4, source="conservation: energy balance",
+    compare_engines(
+        car, ("cab_floor_acc_z", "seat_acc_z"),
+        rms="RMS of cab floor and seat of a cab on four mounts over MuJoCo, class B",
+        energy="cab on four mounts: work, less stored and dissipated energy",
     )  # fmt: skip
