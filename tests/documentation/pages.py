@@ -15,8 +15,6 @@ processes of their own. After a change of messages, `python -m tests.documentati
 outputs.
 """
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import io

@@ -1,7 +1,5 @@
 """Sweeps: tables independent of the number of workers, stored rows, failed rows, executors."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -1,7 +1,5 @@
 """Settings of a run on the shaker or a road with all its files, each declared once."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 

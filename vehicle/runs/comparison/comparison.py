@@ -1,7 +1,5 @@
 """Result of a comparison, with its tables for the console, CSV and JSON, largest errors first."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass

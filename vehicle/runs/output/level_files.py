@@ -1,7 +1,5 @@
 """Files of the periodic states of a car over frequency and level: tables, pictures and summary."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial

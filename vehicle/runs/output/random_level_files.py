@@ -1,7 +1,5 @@
 """Files of FRFs at levels of a random input: table, picture and summary."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Studies of a search, run into a folder: a Pareto front, or the smallest change to reach targets."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
