@@ -278,7 +278,7 @@ def _mean(values: Any) -> float:
 def _plain(value: Any) -> Any:
     """Return a value for JSON; None for NaN and infinity."""
     if isinstance(value, (float, np.floating)):
-        return finite(value)
+        return finite(float(value))
     return value
 
 
