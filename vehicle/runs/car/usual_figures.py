@@ -130,9 +130,7 @@ def car_figures(data: Any) -> tuple[UsualFigure, ...]:
     ):
         source = "73 measured cars, NHTSA's inertial parameter database, SAE 1999-01-1336"
         low, high = (math.nan, math.nan) if too_heavy(data.mass_kg) else (index.least, index.most)
-        figures.append(
-            UsualFigure(name=name, axle="", value=value, decimals=3, low=low, high=high, source=source)
-        )
+        figures.append(UsualFigure(name=name, axle="", value=value, decimals=3, low=low, high=high, source=source))
     return tuple(figures)
 
 
