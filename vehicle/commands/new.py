@@ -212,14 +212,8 @@ def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
         else:
             lines.append(f"{name:<34}{check.stated:>10.6g}{check.value:>12.6g}{100.0 * check.deviation:z10.3f} %")
     others += [f"{name:<56}  {origin}" for name, origin in result.parts]
-    lines += [
-        "",
-        *others,
-        "",
-        str(figures_table(figures, mass_and_cog(result.car)[0])),
-        "",
-        *(f"note: {text}" for text in _notes(result)),
-    ]
+    table = figures_table(figures, mass_and_cog(result.car)[0])
+    lines += ["", *others, "", str(table), "", *(f"note: {text}" for text in _notes(result))]
     lines.append(f"run it: python -m vehicle shaker --vehicle {file} --road B --speed 80")
     return "\n".join(lines)
 

@@ -21,8 +21,8 @@ from vehicle.model.parameters.air_spring import ATMOSPHERE, GAMMA, AirSpring, ai
 from vehicle.model.parameters.composition import PlacedConnection
 
 LARGEST_ERROR = 0.05
-"""Maximum error of the linear law [-] without a notice, of the change of force at the largest travel. A box on exact gas
-on classes B, C and D: at an error of 6, 13 and 30 % its RMS is 0.5, 1.3 and 3.5 % higher, its peaks by 7, 12 and 21 %."""
+"""Maximum error of the linear law [-] without a notice, of the change of force at the largest travel. A box on exact
+gas on classes B, C and D, with errors of 6, 13 and 30 %: RMS 0.5, 1.3 and 3.5 % higher, peaks 7, 12 and 21 % off."""
 
 
 def air_springs(car: Any) -> dict[str, PlacedConnection]:
@@ -51,8 +51,8 @@ def air_notice(car: Any, channels: Mapping[str, Vector]) -> tuple[str, ...]:
             worst = largest
             low, high = (number(1e3 * end) for end in ends)
             text = (
-                f"{link.path} moves from {low} to {high} mm (compression positive), where its linear law is wrong by up "
-                f"to {number(100.0 * largest, 2)} % of the change of its force, as the gas is adiabatic: peaks are "
+                f"{link.path} moves from {low} to {high} mm (compression positive), where its linear law is wrong by "
+                f"up to {number(100.0 * largest, 2)} % of the change of its force, as the gas is adiabatic: peaks are "
                 "wrong by about as much, RMS values by a tenth of that",
             )
     return text
@@ -75,7 +75,8 @@ def air_travel(law: AirSpring, load: float, force: Vector, interval: float) -> V
     gain = (1.0 - decay) * law.air_exchange_time / interval
     fading, difference = np.array([1.0, -decay]), np.array([1.0, -1.0])
     elastic = np.array([law.stiffness[2] + static, 0.0]) + law.damping[2] / interval * difference
-    return np.asarray(lfilter(fading, np.polymul(elastic, fading) + [*(branch * gain * difference), 0.0], force))
+    whole = np.polyadd(np.polymul(elastic, fading), np.append(branch * gain * difference, 0.0))
+    return np.asarray(lfilter(fading, whole, force))
 
 
 def gas_error(law: AirSpring, load: float, travel: float) -> float:
