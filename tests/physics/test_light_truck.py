@@ -70,11 +70,12 @@ def test_frequencies_are_those_of_a_light_truck(truck):
         assert mode.description.startswith(motion) and 2.0 < mode.frequency < 4.0
 
 
-@pytest.mark.parametrize(("road", "speed", "duration"), [("B", 60, 5), ("cleat:20x50", 40, 3.5)])
-def test_both_engines_and_energy(truck, road, speed, duration):
-    period = {"period": "record"} if road == "B" else {}
-    stepped, run = (truck.run(Road(road, speed, duration=duration, **period), engine=engine, channels=CHANNELS)
-                    for engine in ("mujoco", "reduced"))  # fmt: skip
+ROADS = {"class B": Road("B", 60, duration=5, period="record"), "cleat": Road("cleat:20x50", 40, duration=3.5)}
+
+
+@pytest.mark.parametrize("road", ROADS)
+def test_both_engines_and_energy(truck, road):
+    stepped, run = (truck.run(ROADS[road], engine=engine, channels=CHANNELS) for engine in ("mujoco", "reduced"))
     errors = run.recording.statistics.errors
     ratios = np.array([np.std(run[each]) / np.std(stepped[each]) - errors.get(each, 0.0) for each in CHANNELS])
     validated(
