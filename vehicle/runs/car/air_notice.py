@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from scipy.signal import lfilter
+import scipy
 
 from vehicle.arrays import Vector
 from vehicle.digits import number
@@ -76,7 +76,7 @@ def air_travel(law: AirSpring, load: float, force: Vector, interval: float) -> V
     fading, difference = np.array([1.0, -decay]), np.array([1.0, -1.0])
     elastic = np.array([law.stiffness[2] + static, 0.0]) + law.damping[2] / interval * difference
     whole = np.polyadd(np.polymul(elastic, fading), np.append(branch * gain * difference, 0.0))
-    return np.asarray(lfilter(fading, whole, force))
+    return np.asarray(scipy.signal.lfilter(fading, whole, force))
 
 
 def gas_error(law: AirSpring, load: float, travel: float) -> float:
