@@ -84,9 +84,9 @@ BAND = {"velocity": [-0.5, -0.1, 0.1, 0.5], "soft": [-60.0, -30.0, -30.0, -80.0]
     ({"velocity": [-0.5, -0.1, 0.1, float("nan")]}, "found nan m/s, must be a finite number"),
     ({"firm": [50.0, 20.0, float("inf"), 50.0]}, "found inf N, must be a finite number"),
     ({"soft": BAND["firm"], "firm": BAND["soft"]}, "band_soft: found 50 N at -0.5 m/s, must be at most 0: .* exchange"),
-    ({"firm": [50.0, -20.0, 20.0, 50.0]}, "band_firm: found -20 N at -0.1 m/s, must be at least 0: .*; subtract the"),
+    ({"firm": [50.0, -20.0, 20.0, 50.0]}, "band_firm: found -20 N at -0.1 m/s, must be at least 0: .*; subtract"),
     ({"soft": -60.0}, "must be a list, not -60.0"),
 ])  # fmt: skip
 def test_a_wrong_band_is_refused(changes, said):
-    with pytest.raises(ConfigurationError, match=f"front.damper.tested.band_.*{said}"):
+    with pytest.raises(ConfigurationError, match=f"front.damper.tested.*{said}"):
         Car.load("focus_road", {f"front.damper.tested.band_{name}": each for name, each in (BAND | changes).items()})

@@ -62,13 +62,13 @@ def test_the_band_of_some_velocities_leaves_the_others():
     assert change == pytest.approx([0.0, -30.0, 0.0, 0.0, -30.0, 0.0], abs=1e-6)
 
 
-def test_beyond_the_band_the_last_slope_continues():
-    """The same law as a table with points beyond the band has the same edges."""
-    velocity = [-3.0, -0.06, 0.0, 0.06, 3.0]
-    table = {"viscous_law": "table", "velocity": velocity, "force": [1200.0 * v + 228.0 * np.sign(v) for v in velocity]}
-    for edge, other in zip(banded().law_band(), banded(**table).law_band(), strict=True):
-        laws = [car.vehicle.composition.dampers[0].law for car in (edge, other)]
-        assert force(laws[1], np.array([-2.0, 2.0])) == pytest.approx(force(laws[0], np.array([-2.0, 2.0])), rel=1e-6)
+def test_beyond_the_band_the_change_continues_with_its_last_slope():
+    """A law with a bend beyond its band: the changes at 2 m/s are those of both ends, -60 and -80 N, by closed form."""
+    velocity = [-3.0, -1.0, -0.06, 0.0, 0.06, 1.0, 3.0]
+    bent = banded(viscous_law="table", velocity=velocity, force=[-5e3, -1.5e3, -300.0, 0.0, 300.0, 1.5e3, 5e3])
+    laws = [car.vehicle.composition.dampers[0].law for car in (bent, bent.law_band()[0])]
+    before, after = (force(law, np.array([-2.0, 2.0])) for law in laws)
+    assert after - before == pytest.approx([60.0 + 1.5 * 30.0 / 0.4, -80.0 - 1.5 * 50.0 / 0.4], abs=1e-3)
 
 
 def test_each_side_has_its_own_edge():
