@@ -130,9 +130,7 @@ class ShakerSettings(Settings):
         flags = [flag for flag, value in parts.items() if value is not None]
         flags += [self.declared()[name]["flag"] for name in self.given(without=names)]
         for flag in flags:
-            raise ConfigurationError(
-                f"{flag}: belongs to a run of a whole road, but {why}; leave one of them out"
-            )
+            raise ConfigurationError(f"{flag}: belongs to a run of a whole road, but {why}; leave one of them out")
 
     def chosen_engine(self) -> tuple[str, str]:
         """Return the engine, and the reason if it differs from `engine`.

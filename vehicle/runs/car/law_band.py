@@ -3,7 +3,7 @@
 The band is stored with the law (`tested.band_velocity`, `band_soft`, `band_firm`: changes of the force in its
 direction). At an edge, the friction limit takes the change at the lowest velocity of the band, the mean of both sides
 and at least to zero; the curve takes the rest, straight between the velocities, to zero at rest, and beyond the band
-with its last slope. The table of a curve does not fall with the velocity: where an edge would, its force stays constant.
+with its last slope. The table of a curve does not fall with the velocity: where an edge would, its force is constant.
 """
 
 from collections.abc import Mapping, Sequence
@@ -92,7 +92,8 @@ def edge_of(
     remaining = np.sign(velocity) * (change - (friction - law.coulomb_friction))
     curve = damper_curve(law)
     # The change is straight through zero between the lowest velocities of both sides.
-    speeds, middle = np.unique([*velocity, *curve.knots, 0.0]), velocity.size // 2
+    middle, last = velocity.size // 2, 2.0 * float(np.max(np.abs([*velocity, *curve.knots])))
+    speeds = np.unique([-last, *velocity, *curve.knots, 0.0, last])  # a table continues with the slope of its ends
     ends, changes = np.insert(velocity, middle, 0.0), np.insert(remaining, middle, 0.0)
     force = curve.force(speeds) + scipy.interpolate.make_interp_spline(ends, changes, k=1)(speeds)
     # The curve of the vehicle file does not fall with the velocity.
