@@ -35,7 +35,7 @@ class LawBandSummary(Stored):
     firm: EdgeSummary
 
 
-def band_rows(summary: RunSummary) -> list[tuple[str, str, str, str]]:
+def band_rows(summary: RunSummary) -> list[tuple[str, ...]]:
     """Return words, and values with the softest, the fitted and the firmest laws; empty without `law_band`."""
     band = summary.law_band
     if band is None:
