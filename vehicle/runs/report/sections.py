@@ -179,8 +179,9 @@ def dampers(run: FinishedRun) -> Markup | None:
             )
         )
     slip, limit = slip_words(summary.slip_limits, list(first)), 1e3 * summary.saturated_velocity
-    band, text = band_rows(summary), band_sentence(summary)
-    return fill("dampers", friction=run.friction, rows=rows, slip=slip, limit=limit, band_rows=band, band=text)
+    text = band_sentence(summary)
+    band = {"rows": band_rows(summary), "caption": text[:1].upper() + text[1:]}
+    return fill("dampers", friction=run.friction, rows=rows, slip=slip, limit=limit, band=band)
 
 
 def _when(value: float | None) -> str:
