@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class EdgeSummary(Stored):
     """Run with all banded dampers at an edge of their band.
 
-    `weighted_rms` [m/s2] by output point, as in `comfort`; `slip_share` [-] by wheel; `energy_residual` of the input
+    `weighted_rms` [m/s2] by output point, see `ComfortSummary`; `slip_share` [-] by wheel; `energy_residual` of the input
     work [-], null for the reduced engine.
     """
 

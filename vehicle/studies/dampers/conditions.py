@@ -85,7 +85,7 @@ def fitted_beyond_lag(
 
     Args:
         tests: tests of equal conditions.
-        fit_of: fits laws to the settled samples of tests, as `choose_law`; the first of its results is the chosen law.
+        fit_of: fits laws to the settled samples of tests, see `choose_law`; its first result is the chosen law.
 
     Returns:
         The tests with the samples that were fitted as settled, and with a notice on a begin that is left out; the fits.
