@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class EdgeSummary(Stored):
     """Run with all banded dampers at an edge of their band.
 
-    `weighted_rms` [m/s2] by output point, see `ComfortSummary`; `slip_share` [-] by wheel; `energy_residual` of the input
-    work [-], null for the reduced engine.
+    `weighted_rms` [m/s2] by output point, `slip_share` [-] by wheel, `energy_residual` of the input work [-], null for
+    the reduced engine.
     """
 
     weighted_rms: dict[str, float]
@@ -54,10 +54,11 @@ def band_rows(summary: RunSummary) -> list[tuple[str, ...]]:
 
 
 def _comfort(summary: RunSummary) -> dict[str, tuple[float, float, float]]:
-    """Return the weighted RMS of each point with the softest, the fitted and the firmest laws [m/s2]."""
+    """Return the weighted RMS of seat rail, and of a seat, with the softest, the fitted and the firmest laws [m/s2]."""
     assert summary.law_band is not None
     soft, firm = summary.law_band.soft.weighted_rms, summary.law_band.firm.weighted_rms
-    return {point: (soft[point], value.weighted, firm[point]) for point, value in summary.comfort.items()}
+    points = {name: value for name, value in summary.comfort.items() if name != "seat" or summary.seat_value}
+    return {point: (soft[point], value.weighted, firm[point]) for point, value in points.items()}
 
 
 def band_sentence(summary: RunSummary) -> str:
