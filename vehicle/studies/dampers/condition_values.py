@@ -49,9 +49,10 @@ def condition_values(
         wanted = text.removeprefix(CHANNEL)
         column = pick(measurement, wanted, option="--condition")
         other = next((role for role, used in columns.items() if used == column), None)
-        channels = {role: choice.channels[role] for role in ("time", "displacement") if role in choice.channels}
-        trace = choose(measurement, dataclasses.replace(plain, channels=channels | {name: wanted})).values[name]
-        other = other or next((role for role, samples in measured.items() if is_copy(samples, trace)), None)
+        if other is None:
+            channels = {role: choice.channels[role] for role in ("time", "displacement") if role in choice.channels}
+            trace = choose(measurement, dataclasses.replace(plain, channels=channels | {name: wanted})).values[name]
+            other = next((role for role, samples in measured.items() if is_copy(samples, trace)), None)
         if other is not None:
             raise ConfigurationError(
                 f"{measurement.path}: {option}: channel {column + 1} {measurement.channels[column].name!r} contains "

@@ -187,8 +187,9 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
             f"{path}: contains {time.size} samples, but at least {LEAST_SAMPLES} are needed; record a longer test"
         )
     x, force = sign * chosen.values["displacement"], sign * chosen.values["force"]
-    names = {role: measurement.channels[pick(measurement, complete.channels[role])].name for role in chosen.values}
-    require_sensors(path, chosen.values, names)
+    names = {role: measurement.channels[pick(measurement, name)].name for role, name in complete.channels.items()}
+    measured_values = {"time": time, **chosen.values}
+    require_sensors(path, measured_values, {"time": "time", **names})
     measured = None
     if "velocity" in chosen.values:
         measured = usable_velocity(path, time, x, sign * chosen.values["velocity"], names, notices)
@@ -201,7 +202,6 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
     settled = waveform.settled
     if not settled.all():
         notices.append(f"fitted from {time[settled][0]:.3g} to {time[settled][-1]:.3g} s, without run-up and run-down")
-    measured_values = {"time": time, **chosen.values}
     values, traces = condition_values(measurement, complete, conditions or {}, pattern, measured_values)
     return DamperTest(
         name=path.stem, time=time, displacement=x, velocity=velocity, force=force, waveform=waveform,
