@@ -1,9 +1,8 @@
-"""Cab of 600 kg on four mounts, with a seat on it: statics, transmission, both engines, energy."""
+"""Cab of 600 kg on four mounts, with a seat on it: statics, transmission; its rides: `test_light_truck.py`."""
 
 import numpy as np
 import pytest
 
-from tests.physics.both_engines import compare_engines
 from tests.validation import validated
 from vehicle.runs.car import Car
 
@@ -73,12 +72,4 @@ def test_transmission_of_four_mounts(car):
         "Bushings, springs and stops", "cab on four mounts, vertical acceleration of its centre of gravity", cab,
         (mounts * np.mean(floor, axis=0) + cushion * (seat - rail)) / (MASS + mounts), peak=1e-4, unit="m/s2 per m",
         source="closed form: Newton's law of the cab on its mounts and the cushion",
-    )  # fmt: skip
-
-
-def test_both_engines_and_energy(car):
-    compare_engines(
-        car, ("cab_floor_acc_z", "seat_acc_z"),
-        rms="RMS of cab floor and seat of a cab on four mounts over MuJoCo, class B",
-        energy="cab on four mounts: work, less stored and dissipated energy",
     )  # fmt: skip

@@ -161,8 +161,9 @@ def test_friction_of_the_leaves_by_energy():
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_both_engines_and_energy(axles, name):
+def test_both_engines_and_energy(axles):
+    """The axle with air springs; rides on leaf springs: `test_light_truck.py`."""
+    name = "air_axle"
     compare_engines(
         axles[name], ("seat rail z", "knuckle rr z"), rms=f"{name}: RMS of seat rail and knuckle over MuJoCo, class B",
         energy=f"{name}: work, less stored and dissipated energy",
