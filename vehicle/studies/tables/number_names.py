@@ -52,10 +52,11 @@ PER_WHEEL = ("wheel", "corner", "side", "each", "one", "quarter", "single")
 """Words of a number of one wheel instead of an axle."""
 
 QUANTITIES: dict[str, Quantity] = {
-    "sprung_cog_height": _quantity("sprung cog height|sprung mass cog height|sprung cog z", LENGTH, (0.2, 1.5)),
+    "sprung_cog_height": _quantity("sprung cog height|sprung mass cog height|sprung cog z", LENGTH, (0.2, 1.5),
+                                   optional="above"),
     "sprung_cog_x": _quantity("sprung cog|sprung mass cog|sprung cog x|spring mass cog", LENGTH, (0.2, 5.0),
                               of_axle=None,
-                              optional="mass distance behind longitudinal"),
+                              optional="mass distance behind longitudinal vehicle"),
     "sprung_roll_inertia": _quantity("sprung roll inertia|sprung inertia x|sprung inertia ixx|sprung ixx|sprung "
                                      "inertia xx", INERTIA, (50, 2e4), optional="mass moment"),
     "sprung_pitch_inertia": _quantity("sprung pitch inertia|sprung inertia y|sprung inertia iyy|sprung iyy|sprung "
@@ -71,12 +72,12 @@ QUANTITIES: dict[str, Quantity] = {
     "axle_load": _quantity("mass|load|axle load", MASS, (20, 2e4), of_axle=True,
                            optional="vehicle kerb wheel corner total empty"),
     "front_share": _quantity("mass distribution|distribution|mass share|load distribution", NONE, (0.2, 0.8),
-                             of_axle=None, optional="kerb"),
+                             of_axle=None, optional="kerb total vehicle"),
     "wheelbase": _quantity("wheelbase", LENGTH, (1.0, 8.0), optional="vehicle length"),
     "track": _quantity("track", LENGTH, (0.8, 3.0), of_axle=None, optional="wheel"),
     "half_track": _quantity("halftrack", LENGTH, (0.4, 1.5), of_axle=None),
-    "cog_height": _quantity("cog height|cog z|height mass cog", LENGTH, (0.2, 1.5),
-                            optional="vehicle above mass total over"),
+    "cog_height": _quantity("cog height|cog z|height mass cog|cog above", LENGTH, (0.2, 1.5),
+                            optional="vehicle above mass total"),
     "cog_x": _quantity("cog|cog distance|cog x|cog longitudinal", LENGTH, (0.2, 5.0), of_axle=None,
                        optional="distance behind longitudinal x wheel mass between vehicle"),
     "roll_inertia": _quantity("roll inertia|inertia x|inertia xx|ixx|inertia ixx|jxx", INERTIA, (50, 2e4),
@@ -93,10 +94,10 @@ QUANTITIES: dict[str, Quantity] = {
     "tyre_damping": _quantity("tyre damping|tyre damper", DAMPING, (0.0, 5e3), of_axle=None, optional="rate"),
     "ride_rate": _quantity("ride rate", RATE, (3e3, 3e5), of_axle=None, optional="wheel"),
     "wheel_rate": _quantity("wheel rate|wheel spring rate|wheel suspension rate", RATE, (3e3, 3e5), of_axle=None,
-                            optional="spring suspension center"),
+                            optional="spring suspension center body"),
     "suspension_rate": _quantity("suspension rate|suspension spring rate|suspension spring", RATE, (3e3, 3e5),
                                  of_axle=None),
-    "spring_rate": _quantity("spring rate|spring", RATE, (3e3, 1e6), of_axle=None, optional="main"),
+    "spring_rate": _quantity("spring rate|spring", RATE, (3e3, 1e6), of_axle=None, optional="main body"),
     "damper_ratio": _quantity("damper motion ratio", NONE, (0.2, 1.2), of_axle=None),
     "motion_ratio": _quantity("motion ratio|spring motion ratio|spring ratio", NONE, (0.2, 1.2), of_axle=None,
                               optional="spring damper wheel"),
@@ -106,13 +107,16 @@ QUANTITIES: dict[str, Quantity] = {
                                (100, 1e5), of_axle=None, optional="rate damper"),
     "damper_constant": _quantity("damper rate|damping|damper|damper damping|damping rate", DAMPING, (100, 1e5),
                                  of_axle=None, optional="linear"),
+    "bar_wheel_rate": _quantity("bar wheel rate", RATE, (300, 2e5), of_axle=True),
     "bar_rate": _quantity("bar roll rate|bar rate", ROLL_RATE, (500, 5e5), of_axle=True, optional="roll torsional"),
     "roll_rate": _quantity("roll rate", ROLL_RATE, (2e3, 1e6), of_axle=True,
                            optional="suspension axle total vehicle"),
+    "whole_roll_rate": _quantity("roll rate", ROLL_RATE, (5e3, 2e6), optional="total vehicle suspension"),
+    "roll_share": _quantity("roll rate distribution|roll distribution", NONE, (0.05, 0.95), of_axle=True),
     "ride_frequency": _quantity("ride frequency|frequency|body frequency", FREQUENCY, (0.3, 8.0), of_axle=True,
                                 optional="ride bounce heave suspension"),
     "pitch_frequency": _quantity("pitch frequency", FREQUENCY, (0.3, 8.0)),
-    "wheel_hop": _quantity("wheel hop|wheel hop frequency", FREQUENCY, (4.0, 30.0), of_axle=True),
+    "wheel_hop": _quantity("wheel hop|wheel hop frequency|wheel frequency", FREQUENCY, (4.0, 30.0), of_axle=True),
 }  # fmt: skip
 """Numbers by key; the first that fits is taken."""
 
@@ -168,4 +172,7 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
             required = set(option.split())
             if required <= terms <= required | set(quantity.optional.split()):
                 return key, name.axle, False
+    if "body" in terms:
+        # The body of a lumped model is its sprung mass.
+        return number_of(replace(name, text="", terms=tuple({"body": "sprung"}.get(term, term) for term in name.terms)))
     return None

@@ -1,7 +1,7 @@
 """Statements of a table: each row as a point, a number, a curve or a remark, in the words and units of the file."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -9,7 +9,8 @@ from vehicle.errors import DataError
 from vehicle.studies.tables.axes import stated_axes
 from vehicle.studies.tables.cell_units import length_unit, name_and_unit
 from vehicle.studies.tables.cells import WITH_UNIT, CellTable, Row, read_cells
-from vehicle.studies.tables.name_words import AXLES, CORNERS, SIDES, NameWords, name_words, right_letters, words_of
+from vehicle.studies.tables.headers import Heads, read_heads
+from vehicle.studies.tables.name_words import AXLES, SIDES, NameWords, name_words, right_letters, words_of
 from vehicle.studies.tables.number_names import number_of
 from vehicle.studies.tables.point_names import point_of
 from vehicle.studies.tables.turned_points import turned_points
@@ -71,20 +72,6 @@ class Statements:
     tyre: TyreFile | None = None
 
 
-COLUMNS = {
-    "name": "keyword name point hardpoint parameter quantity description bezeichnung punkt variable item property "
-            "symbol location element groesse größe kenngröße",
-    "unit": "unit units einheit",
-    "value": "value wert val values",
-    "side": "side symmetry seite",
-    "axle": "axle achse",
-    "skip": "source comment comments note notes reason remark remarks bemerkung quelle reference meaning",
-}  # fmt: skip
-"""Kind of a column -> words of its header."""
-
-KINDS = {word: sort for sort, terms in COLUMNS.items() for word in terms.split()}
-_COORDINATE = re.compile(r"(?:loc|pos|coord|coordinate)?[ _]*([xyz])(?:[ _]*(?:value|coordinate|coord|pos|loc))?", re.I)
-_BUSHING = re.compile(r"(k|c|d|stiffness|damping)[ _]*([xyz])", re.IGNORECASE)
 _AXLE_TITLE = re.compile(r"\b(front|rear) (axle|suspension|hardpoints)\b|\b(vorder|hinter)achse", re.IGNORECASE)
 _ORIGIN = re.compile(r"\borigin\b|\bursprung\b", re.IGNORECASE)
 _SENTENCE = re.compile(r"\b(is|are|was|were|has|have|ist|sind|hat)\b|\.$", re.IGNORECASE)
@@ -93,22 +80,6 @@ LONGEST_TITLE = 6
 """Most words of a title that does not begin with the axle or its points."""
 _FIRST = {*AXLES, *SIDES, "hardpoint", "hardpoints", "points", "coordinates"}
 TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
-
-
-def _triples(columns: Mapping[str, int]) -> list[str]:
-    """Return the letters of the columns k, c, d, s that have x, y and z: stiffness or damping, by their units."""
-    return [letter for letter in "kcds" if {f"{letter}{axis}" for axis in "xyz"} <= set(columns)]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Heads:
-    """Header of a block: index and unit of each column by its kind, axles of values, columns of names."""
-
-    columns: dict[str, int]
-    units: dict[str, str]
-    axles: dict[int, tuple[str, str]]
-    width: int
-    names: list[int]
 
 
 def statements(path: Path) -> Statements:
@@ -132,7 +103,7 @@ class _Reader:
     content: Statements
     letters: dict[str, str]
     stem: str
-    heads: _Heads | None = None
+    heads: Heads | None = None
     axle: str = ""
     side: str = ""
     unit: str = ""
@@ -164,7 +135,7 @@ class _Reader:
         """Read a row of numbers or a header; False for a text."""
         row = self._whole_name(row)
         values = [self.table.number(row, cell) for cell in row.cells]
-        if self.heads is not None and {"velocity", "force"} <= set(self.heads.columns):
+        if self.heads is not None and self.heads.is_curve:
             pair = [values[self.heads.columns[key]] if self.heads.columns[key] < len(values) else None
                     for key in ("velocity", "force")]  # fmt: skip
             if None not in pair:
@@ -174,7 +145,7 @@ class _Reader:
         if not any(value is not None for value in values) and not any(map(WITH_UNIT.fullmatch, row.cells)) \
                 and not any(map(TYRE_SIZE.fullmatch, row.cells)):  # fmt: skip
             return self._header(row)
-        if self.heads is not None and (triples := _triples(self.heads.columns)):
+        if self.heads is not None and (triples := self.heads.triples):
             text = self._cell(row, "name")
             for letter in triples:
                 at = [values[self.heads.columns[f"{letter}{axis}"]] for axis in "xyz"]
@@ -194,58 +165,17 @@ class _Reader:
         return Row(where=row.where, sheet=row.sheet, cells=(", ".join(row.cells[: extra + 1]), *row.cells[extra + 1 :]))
 
     def _header(self, row: Row) -> bool:
-        columns: dict[str, int] = {}
-        units: dict[str, str] = {}
-        axles: dict[int, tuple[str, str]] = {}
-        names: list[int] = []
-        for index, cell in enumerate(row.cells):
-            text, unit = name_and_unit(cell)
-            plain = words_of(text)
-            coordinate = _COORDINATE.fullmatch(text)
-            if bushing := _BUSHING.fullmatch(text):
-                sort = f"{bushing[1][0].lower()}{bushing[2].lower()}"
-                columns.setdefault(sort, index)
-                units.setdefault(sort, unit)
-                continue
-            sort = coordinate[1].lower() if coordinate else next((KINDS[word] for word in text.lower().split()
-                                                                  if word in KINDS), "")  # fmt: skip
-            if not sort and plain and plain[0] in ("velocity", "speed", "geschwindigkeit", "v"):
-                sort = "velocity"
-            elif not sort and plain and plain[0] in ("force", "kraft", "f") and "velocity" in columns:
-                sort = "force"
-            elif not sort and plain and set(plain) <= {*AXLES, *SIDES, *CORNERS, "axle", "f", "r", "value", "wheel"}:
-                word = next((word for word in plain if word in (*AXLES, *CORNERS, "f", "r")), "")
-                side = next((word for word in plain if word in SIDES), "")
-                axles[index] = CORNERS.get(word, ({"f": "front", "r": "rear"}.get(word, word), side))
-            if sort == "name":
-                names.append(index)
-            if sort and sort not in columns:
-                columns[sort] = index
-                units[sort] = unit
-            elif unit and index in axles:
-                units[f"axle{index}"] = unit
-        points = {"x", "y", "z"} <= set(columns)
-        listed = (
-            points
-            or bool(_triples(columns))
-            or {"velocity", "force"} <= set(columns)
-            or "value" in columns
-            or len(axles) > 1
-        )
-        if not listed:
+        heads = read_heads(row)
+        if heads is None:
             return False
-        if self.heads is None and self.placed and "value" in columns:
+        if self.heads is None and self.placed and "value" in heads.columns:
             self._title("")
-        if "name" not in columns:
-            taken = {*columns.values(), *(() if points else axles)}
-            free = [index for index in range(len(row.cells)) if index not in taken]
-            columns["name"] = free[0] if free else 0
         # "Front suspension (mm), X, Y, Z": the head of the names is a title.
-        title, unit = name_and_unit(row.cells[columns["name"]])
+        title, unit = name_and_unit(row.cells[heads.columns["name"]])
         if {*words_of(title)} & set(AXLES):
             self._title(title)
         self.unit = unit or self.unit
-        self.heads = _Heads(columns=columns, units=units, axles=axles, width=len(row.cells), names=names)
+        self.heads = heads
         return True
 
     def _point_row(self, row: Row, values: Sequence[float | None]) -> bool:
