@@ -93,7 +93,8 @@ _PAIRS = (
     (("center", "mass"), "cog"), (("center", "gravity"), "cog"), (("cog", "cog"), "cog"), (("bar", "link"), "droplink"),
     (("damper", "damper"), "damper"), (("twist", "beam"), "twistbeam"), (("torsion", "beam"), "twistbeam"),
     (("a", "arm"), "arm"), (("stub", "axle"), "knuckle"), (("shear", "center"), "beam"),
-    (("without", "driver"), "empty"), (("with", "driver"), "occupied"), (("including", "driver"), "occupied"), (("incl", "driver"), "occupied"),
+    (("without", "driver"), "empty"), (("with", "driver"), "occupied"), (("including", "driver"), "occupied"),
+    (("incl", "driver"), "occupied"),
     (("half", "track"), "halftrack"),
 )  # fmt: skip
 """Neighbours that are one word."""

@@ -48,6 +48,10 @@ def _quantity(
     return Quantity(terms=tuple(terms.split("|")), optional=optional, dimension=dimension, sizes=sizes, of_axle=of_axle)
 
 
+QUALIFIERS = frozenset({"max", "maximum", "min", "minimum", "permissible", "permitted", "zul", "zulässig", "zulässige",
+                        "laden", "gross", "limit", "tyre"})  # fmt: skip
+"""Words that make another number of it, also in parentheses: an axle load (max), a wheel rate (incl. tyre)."""
+
 PER_WHEEL = ("wheel", "corner", "side", "each", "one", "quarter", "single")
 """Words of a number of one wheel instead of an axle."""
 
@@ -95,7 +99,7 @@ QUANTITIES: dict[str, Quantity] = {
     "ride_rate": _quantity("ride rate", RATE, (3e3, 3e5), of_axle=None, optional="wheel"),
     "wheel_rate": _quantity("wheel rate|wheel spring rate|wheel suspension rate", RATE, (3e3, 3e5), of_axle=None,
                             optional="spring suspension center body"),
-    "suspension_rate": _quantity("suspension rate|suspension spring rate|suspension spring", RATE, (3e3, 3e5),
+    "suspension_rate": _quantity("suspension rate|suspension spring rate|suspension spring|heave rate", RATE, (3e3, 3e5),
                                  of_axle=None),
     "spring_rate": _quantity("spring rate|spring", RATE, (3e3, 1e6), of_axle=None, optional="main body"),
     "damper_ratio": _quantity("damper motion ratio", NONE, (0.2, 1.2), of_axle=None),
@@ -103,7 +107,7 @@ QUANTITIES: dict[str, Quantity] = {
                               optional="spring damper wheel"),
     "damping_ratio": _quantity("damping ratio|critical damping", NONE, (0.02, 1.5), of_axle=None,
                                optional="suspension body ratio ride"),
-    "wheel_damping": _quantity("wheel damping|wheel damper rate|suspension damping|suspension damper rate", DAMPING,
+    "wheel_damping": _quantity("wheel damping|wheel damper rate|suspension damping|suspension damper rate|heave damping", DAMPING,
                                (100, 1e5), of_axle=None, optional="rate damper"),
     "damper_constant": _quantity("damper rate|damping|damper|damper damping|damping rate", DAMPING, (100, 1e5),
                                  of_axle=None, optional="linear"),
@@ -153,6 +157,8 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
         key, axle = SYMBOLS[symbol]
         return key, "" if QUANTITIES[key].of_axle is False else axle or name.axle, True
     terms = set(name.terms)
+    if {"tyre", "rate"} <= terms and terms & {"incl", "including", "inkl", "einschließlich"}:
+        return "ride_rate", name.axle, False
     if "suspension" in name.text.lower() and "suspension" not in terms:
         # "Front suspension stiffness" is the suspension stiffness of the front axle.
         whole = replace(name, text="", terms=(*name.terms, "suspension"))

@@ -11,8 +11,9 @@ from vehicle.studies.tables.cell_units import length_unit, name_and_unit
 from vehicle.studies.tables.cells import WITH_UNIT, CellTable, Row, read_cells
 from vehicle.studies.tables.headers import Heads, read_heads
 from vehicle.studies.tables.name_words import AXLES, SIDES, NameWords, name_words, right_letters, words_of
-from vehicle.studies.tables.number_names import number_of
+from vehicle.studies.tables.number_names import QUALIFIERS, number_of
 from vehicle.studies.tables.point_names import point_of
+from vehicle.studies.tables.turned_numbers import TYRE_SIZE, turned_numbers
 from vehicle.studies.tables.turned_points import turned_points
 from vehicle.studies.tables.tyre_file import TyreFile
 from vehicle.studies.tables.unit_factor import unit_factor
@@ -58,7 +59,7 @@ class Statements:
         points, numbers, curves: its rows.
         bushings: rows of stiffness or damping along x, y, z, with the unit.
         remarks: texts outside these rows, which may state units, axes and the origin.
-        left_out: texts that are not understood, with their places.
+        guessed, left_out: guesses, and texts that are not understood, with their places.
         tyre: tyre of a `.tir` file; None in other files.
     """
 
@@ -68,18 +69,19 @@ class Statements:
     curves: list[Curve] = field(default_factory=list)
     bushings: list[Point] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
+    guessed: list[tuple[str, str]] = field(default_factory=list)
     left_out: list[tuple[str, str]] = field(default_factory=list)
     tyre: TyreFile | None = None
 
 
 _AXLE_TITLE = re.compile(r"\b(front|rear) (axle|suspension|hardpoints)\b|\b(vorder|hinter)achse", re.IGNORECASE)
+_INCLUDED = re.compile(r"\b(incl|inkl|including|with|mit)\b.*")
 _ORIGIN = re.compile(r"\borigin\b|\bursprung\b", re.IGNORECASE)
 _SENTENCE = re.compile(r"\b(is|are|was|were|has|have|ist|sind|hat)\b|\.$", re.IGNORECASE)
 """Marks of a sentence on an axle, which is no title of rows."""
 LONGEST_TITLE = 6
 """Most words of a title that does not begin with the axle or its points."""
 _FIRST = {*AXLES, *SIDES, "hardpoint", "hardpoints", "points", "coordinates"}
-TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
 
 
 def statements(path: Path) -> Statements:
@@ -90,8 +92,8 @@ def statements(path: Path) -> Statements:
         DataError: it is no table, or a name or a number is ambiguous.
     """
     table = read_cells(path)
-    table = replace(table, rows=turned_points(table.rows))
     content = Statements(file=path.name)
+    table = replace(table, rows=turned_points(turned_numbers(table.rows, content.guessed)))
     names = [row.cells[0] for row in table.rows if row.cells]
     _Reader(table=table, content=content, letters=right_letters(names), stem=path.stem).read()
     return content
@@ -194,7 +196,7 @@ class _Reader:
 
     def _plain_row(self, row: Row, values: Sequence[float | None]) -> bool:
         """Read name, value and unit; name and three coordinates; or name and a value of each axle."""
-        heads = self.heads
+        heads = None if row.is_loose else self.heads
         at = heads.columns["name"] if heads is not None and "name" in heads.columns else next(
             (index for index, cell in enumerate(row.cells) if cell and values[index] is None), -1)  # fmt: skip
         if at < 0 or at >= len(row.cells) or not row.cells[at]:
@@ -293,8 +295,11 @@ class _Reader:
             # CarSim counts axles: L_TRACK(2).
             text, axle = text[: index.start()], AXLES[int(index[1]) - 1]
         name = name_words(text, right_letter=letter, where=row.where)
-        if point_of(name) in (None, "cog") and number_of(name) is None and "(" in text:
-            name = name_words(re.sub(r"\([^)]*\)", " ", text), right_letter=letter, where=row.where)
+        if point_of(name) in (None, "cog") and number_of(name) is None and not QUALIFIERS & set(words_of(text)):
+            plain = re.sub(r"\([^)]*\)", " ", text)
+            if name.has("unsprung"):
+                plain = _INCLUDED.sub(" ", plain)
+            name = name_words(plain, right_letter=letter, where=row.where)
         column = words_of(self._cell(row, "axle"))
         axle = axle or next((word for word in column if word in AXLES), "")
         said = words_of(self._cell(row, "side"))

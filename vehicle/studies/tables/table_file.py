@@ -10,7 +10,7 @@ from vehicle.studies.tables.robot_model import read_robot_model
 from vehicle.studies.tables.statements import Number, Statements, statements
 from vehicle.studies.tables.tyre_file import read_tyre_file
 
-TABLES = (".csv", ".txt", ".tsv", ".dat", ".xlsx", ".xlsm")
+TABLES = (".csv", ".txt", ".tsv", ".dat", ".xlsx", ".xlsm", ".m")
 
 REFUSED = {
     ".asy": "an Adams Car assembly names further files; export the hardpoints and masses of its subsystems as CSV",
@@ -24,7 +24,6 @@ REFUSED = {
     ".ods": "an OpenDocument sheet; save it as XLSX or CSV",
     ".xml": "an XML file; write points, values and units to a CSV",
     ".json": "JSON; write points, values and units to a CSV",
-    ".m": "a MATLAB script; write names, values and units to a CSV",
     ".mat": "a MATLAB file; write names, values and units to a CSV",
     ".xacro": "a xacro file; run `xacro FILE > car.urdf` and give its result",
     ".sdf": "SDF; convert it to URDF, or write its masses and points to a CSV",

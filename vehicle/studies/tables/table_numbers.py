@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -11,7 +11,7 @@ from vehicle.errors import DataError
 from vehicle.studies.tables.name_words import words_of
 from vehicle.studies.tables.number_names import DAMPING, GUESSED, PER_WHEEL, QUANTITIES, RATE, SI, number_of
 from vehicle.studies.tables.statements import Number, Statements
-from vehicle.studies.tables.unit_factor import FORCE, MASS, unit_factor
+from vehicle.studies.tables.unit_factor import FORCE, MASS, NONE, unit_factor
 
 AXLES = ("front", "rear")
 GRAVITY = 9.81
@@ -22,6 +22,18 @@ ONE_WHEEL, WHOLE_AXLE = 55.0, 75.0
 
 _OF_BOTH_WHEELS = re.compile(r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bper pair\b")
 """Words of a rate of both wheels of an axle together."""
+
+_SYSTEM = re.compile(r"(?P<si>\bSI\b(-?units|-?Einheiten)?)|\b(US|imperial|english|customary) (customary )?units\b|"
+                     r"\bunits?: *(US|imperial|english)\b|\bUS customary\b")  # fmt: skip
+"""System of units that a remark states."""
+
+_OF_THE_WHEEL = re.compile(r"\b(wheel|rad)(weg)?( travel| displacement| movement)? *(/|:|per|over|to) *(the )?"
+                           r"(spring|damper|shock|feder|dämpfer)")  # fmt: skip
+"""Words of a motion ratio of wheel travel per spring travel, the inverse of ours."""
+
+STROKES = ("compression", "rebound")
+LIMITS = {"max", "maximum", "permissible", "permitted", "zul", "zulässig"}
+"""Words of a remark on a limit of a number, which is not the number."""
 
 _AXLE = {"axle", "both", "pair"}
 """Words of a mass of an axle."""
@@ -84,24 +96,32 @@ def read_numbers(content: Statements, result: CarNumbers) -> Values:
             else:
                 result.left_out.append((row.where, f"{row.name.text!r}: no number of a car here"))
             continue
-        if listed is None:
-            result.left_out.append((row.where, f"{row.name.text!r} = {row.value:g}: no number of a car here"))
+        stroke = next((word for word in STROKES if word in row.name.terms), "")
+        if stroke:
+            listed = number_of(replace(row.name, terms=tuple(term for term in row.name.terms if term != stroke)))
+            listed = listed if listed is not None and QUANTITIES[listed[0]].dimension == DAMPING else None
+        if listed is None or LIMITS & set(words_of(row.note)):
+            why = "no number of a car here" if listed is None else "a limit"
+            result.left_out.append((row.where, f"{row.name.text!r} = {row.value:g}: {why}"))
             continue
         key, axle, symbol = listed
         if key == "axle_load" and row.unit.strip() == "%":
             key = "front_share"
-        value = Stated(value=_si(row, key, result), where=row.where, text=_text(row))
+        value = Stated(value=_si(row, key, content.remarks, result), where=row.where, text=_text(row))
+        if key in ("motion_ratio", "damper_ratio") and _OF_THE_WHEEL.search(f"{row.name.text} {row.note}".lower()):
+            value = replace(value, value=1.0 / value.value, text=f"1 / {value.text}")
         if key == "half_track":
             key, value = "track", replace(value, value=2.0 * value.value, text=f"2 x {value.text}")
         if symbol and len(row.name.terms) <= 2 and row.name.text.lower() not in ("mass", "wheelbase"):
             symbols.append(f"{row.name.text} {key_words(key, axle)}")
         value = _of_axle(row, key, value, result, per_wheel)
         _require_size(row, key, value.value)
-        if row.name.side in ("left", "right"):
+        side = stroke or row.name.side
+        if side in ("left", "right", *STROKES):
             sides = corners.setdefault((key, axle), {})
-            if row.name.side in sides:
+            if side in sides:
                 raise DataError(f"{row.where}: {row.name.text!r} is stated twice; remove one")
-            sides[row.name.side] = value
+            sides[side] = value
             continue
         if (key, axle) in values and abs(values[key, axle].value - value.value) > 1e-6 * abs(value.value):
             raise DataError(
@@ -112,13 +132,19 @@ def read_numbers(content: Statements, result: CarNumbers) -> Values:
     if symbols:
         result.guessed.append(("", f"symbols: {', '.join(symbols)}"))
     for (key, axle), sides in corners.items():
-        values[key, axle] = _both_sides(key, axle, sides, result)
+        values[key, axle] = _both_strokes(sides, result) if set(STROKES) & set(sides) else (
+            _both_sides(key, axle, sides, result))  # fmt: skip
     return values
 
 
-def _si(row: Number, key: str, result: CarNumbers) -> float:
+def _si(row: Number, key: str, remarks: Sequence[str], result: CarNumbers) -> float:
     """Return a number in its SI unit; a unit that is not stated must follow from the size."""
     quantity = QUANTITIES[key]
+    if not row.unit and quantity.dimension != NONE and (stated := _SYSTEM.search(" ".join(remarks))):
+        if not stated["si"]:
+            raise DataError(f"{row.where}: {row.name.text!r} = {row.value:g} has no unit, and the file states "
+                            f"{stated[0]!r}; write its unit")  # fmt: skip
+        row = replace(row, unit=SI[quantity.dimension])
     assert isinstance(row.value, float)  # fmt: skip
     if row.unit:
         unit = unit_factor(row.unit, quantity.dimension)
@@ -170,8 +196,11 @@ def _by_the_sum(content: Statements) -> bool | None:
 
 def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_sum: bool | None) -> Stated:
     """Return the numbers of an axle with masses for both wheels and rates for one; by_the_sum: see above."""
-    if QUANTITIES[key].dimension in (RATE, DAMPING) and _OF_BOTH_WHEELS.search(f"{row.name.text} {row.note}".lower()):
+    said = f"{row.name.text} {row.note}".lower()
+    if QUANTITIES[key].dimension in (RATE, DAMPING) and _OF_BOTH_WHEELS.search(said):
         return replace(value, value=0.5 * value.value, text=f"1/2 x {value.text}")
+    if row.name.has("heave") and not set(words_of(said)) & set(PER_WHEEL):
+        raise DataError(f"{row.where}: {row.name.text!r} may be of a wheel or of both; write \"per wheel\" or \"per axle\"")
     if key not in ("unsprung_mass", "axle_load", "sprung_mass") or row.name.side in ("left", "right"):
         return value
     terms, axle = {*row.name.terms, *row.unit.lower().split(), *words_of(row.note)}, row.name.axle
@@ -206,6 +235,17 @@ def _both_sides(key: str, axle: str, sides: Mapping[str, Stated], result: CarNum
         result.left_out.append((left.where, f"difference of {left.text} and {right.text}: the car is symmetric"))
     factor = 1.0 if key in ("axle_load", "unsprung_mass", "sprung_mass") else 0.5
     return Stated(value=factor * (left.value + right.value), where=left.where, text=f"{left.text}, {right.text}")
+
+
+def _both_strokes(sides: Mapping[str, Stated], result: CarNumbers) -> Stated:
+    """Return the mean of the damping in compression and rebound, the mean slope between equal velocities."""
+    (first, *others) = sides.values()
+    if not set(STROKES) <= set(sides):
+        raise DataError(f"{first.where}: {first.text} is of one stroke; add the other one, or a damper curve")
+    mean = sum(sides[stroke].value for stroke in STROKES) / 2.0
+    text = f"({first.text} + {others[0].text}) / 2"
+    result.guessed.append((first.where, f"{text}: the mean of both strokes"))
+    return Stated(value=mean, where=first.where, text=text)
 
 
 def _require_size(row: Number, key: str, value: float) -> None:
