@@ -34,6 +34,12 @@ class _Numbers:
                 return entry.value
         return None
 
+    @property
+    def of_body(self) -> bool:
+        """Return True for a lumped model: the mass of the body is stated, that of the car is not."""
+        stated = ("kerb_mass", ""), ("axle_load", "front"), ("axle_load", "rear")
+        return ("sprung_mass", "") in self.values and not any(key in self.values for key in stated)
+
     def put(self, name: str, value: float, *rows: tuple[str, str], why: str = "") -> None:
         """Store a number of the car with its rows."""
         self.result.stated[name] = value
@@ -173,6 +179,9 @@ def _cog_and_inertia(table: _Numbers, points: Mapping[str, Any]) -> None:
         a = wheelbase - b
     height, sprung_height = table.get("cog_height"), table.get("sprung_cog_height")
     sprung_a = table.get("sprung_cog_x", "front")
+    if table.of_body and sprung_a is None and sprung_height is None and (a is not None or height is not None):
+        table.guess("sprung_mass", "", "centre of gravity: of the sprung mass, because the mass of the car is not stated")
+        a, height, sprung_a, sprung_height = None, None, a, height
     cog = points.get("cog")
     if cog is not None:
         x, above, of_sprung = cog
@@ -199,7 +208,8 @@ def _cog_and_inertia(table: _Numbers, points: Mapping[str, Any]) -> None:
     if height is not None:
         table.put("cog_height", round(height, 6), ("cog_height", ""), ("sprung_cog_height", ""))
     if a is not None and not placed:
-        table.put("cog_x", round(a, 6), ("cog_x", ""), ("cog_x", "front"), ("cog_x", "rear"), ("sprung_cog_x", ""), ("sprung_cog_x", "front"))
+        keys = ("cog_x", "sprung_cog_x")
+        table.put("cog_x", round(a, 6), *((key, axle) for key in keys for axle in ("", *AXLES)))
     elif a is not None:
         load = stated.get("front_axle_load") or mass - stated.get("rear_axle_load", 0.0)
         if wheelbase and mass and abs(1.0 - a / wheelbase - load / mass) > AGREE:
@@ -213,11 +223,10 @@ def _inertia(table: _Numbers, mass: float, sprung: float, a: float | None, heigh
     """Enter the moments of the car: stated, or of the sprung mass with the unsprung masses as points."""
     stated = table.result.stated
     unsprung, lengths = ("unsprung_mass_front", "unsprung_mass_rear"), ("wheelbase", "track_front", "track_rear")
-    of_body = ("sprung_mass", "") in table.values and ("kerb_mass", "") not in table.values
     for name in ("roll_inertia", "pitch_inertia", "yaw_inertia"):
         value, key = table.get(name), f"sprung_{name}"
         moment = table.get(key)
-        if value is not None and moment is None and of_body:
+        if value is not None and moment is None and table.of_body:
             table.guess(name, "", f"{name.replace('_', ' ')}: of the sprung mass, whose mass is stated alone")
             value, moment, key = None, value, name
         if value is not None:

@@ -99,8 +99,8 @@ QUANTITIES: dict[str, Quantity] = {
     "ride_rate": _quantity("ride rate", RATE, (3e3, 3e5), of_axle=None, optional="wheel"),
     "wheel_rate": _quantity("wheel rate|wheel spring rate|wheel suspension rate", RATE, (3e3, 3e5), of_axle=None,
                             optional="spring suspension center body"),
-    "suspension_rate": _quantity("suspension rate|suspension spring rate|suspension spring|heave rate", RATE, (3e3, 3e5),
-                                 of_axle=None),
+    "suspension_rate": _quantity("suspension rate|suspension spring rate|suspension spring|heave rate", RATE,
+                                 (3e3, 3e5), of_axle=None),
     "spring_rate": _quantity("spring rate|spring", RATE, (3e3, 1e6), of_axle=None, optional="main body"),
     "damper_ratio": _quantity("damper motion ratio", NONE, (0.2, 1.2), of_axle=None),
     "motion_ratio": _quantity("motion ratio|spring motion ratio|spring ratio", NONE, (0.2, 1.2), of_axle=None,
@@ -145,6 +145,7 @@ SYMBOLS: dict[str, tuple[str, str]] = {
     "ktr": ("tyre_rate", "rear"), "rw": ("tyre_radius", ""), "rre": ("tyre_radius", ""), "r0": ("free_radius", ""),
     "mr": ("motion_ratio", ""), "mrf": ("motion_ratio", "front"), "mrr": ("motion_ratio", "rear"),
     "kspring": ("spring_rate", ""), "kspringl": ("spring_rate", ""), "wheelbase": ("wheelbase", ""),
+    "hwc": ("tyre_radius", ""), "krollaux": ("bar_rate", ""), "kaux": ("bar_rate", ""),
 }  # fmt: skip
 """Symbol without signs, in small letters -> number and axle: lumped models, CommonRoad, CarSim."""
 

@@ -7,11 +7,12 @@ from pathlib import Path
 
 from vehicle.errors import DataError
 from vehicle.studies.tables.axes import stated_axes
+from vehicle.studies.tables.carsim_rows import carsim_rows
 from vehicle.studies.tables.cell_units import length_unit, name_and_unit
 from vehicle.studies.tables.cells import WITH_UNIT, CellTable, Row, read_cells
 from vehicle.studies.tables.headers import Heads, read_heads
 from vehicle.studies.tables.name_words import AXLES, SIDES, NameWords, name_words, right_letters, words_of
-from vehicle.studies.tables.number_names import QUALIFIERS, number_of
+from vehicle.studies.tables.number_names import QUALIFIERS, QUANTITIES, number_of
 from vehicle.studies.tables.point_names import point_of
 from vehicle.studies.tables.turned_numbers import TYRE_SIZE, turned_numbers
 from vehicle.studies.tables.turned_points import turned_points
@@ -91,8 +92,15 @@ def statements(path: Path) -> Statements:
         ConfigurationError: the file is missing or too large.
         DataError: it is no table, or a name or a number is ambiguous.
     """
-    table = read_cells(path)
     content = Statements(file=path.name)
+    if path.suffix.lower() == ".par":
+        rows, others = carsim_rows(path)
+        table = CellTable(rows=tuple(rows), comma="thousands")
+        if others:
+            content.left_out.append(("", f"keywords of no number of a car here: {', '.join(dict.fromkeys(others))}"))
+        _Reader(table=table, content=content, letters={}, stem="").read()
+        return content
+    table = read_cells(path)
     table = replace(table, rows=turned_points(turned_numbers(table.rows, content.guessed)))
     names = [row.cells[0] for row in table.rows if row.cells]
     _Reader(table=table, content=content, letters=right_letters(names), stem=path.stem).read()
@@ -209,6 +217,10 @@ class _Reader:
         unit = self._cell(row, "unit") or unit
         skipped = set() if heads is None else {heads.columns[key] for key in ("unit", "skip") if key in heads.columns}
         if heads is not None and heads.axles:
+            filled = [index for index in heads.axles if index < len(row.cells) and row.cells[index]]
+            whole = number_of(name_words(text, right_letter=""))
+            # "Total weight,1400,," below front and rear is the weight of the car.
+            is_whole = len(filled) == 1 and whole is not None and QUANTITIES[whole[0]].of_axle is False
             for index, (axle, side) in heads.axles.items():
                 cell = row.cells[index] if index < len(row.cells) else ""
                 joined = WITH_UNIT.fullmatch(cell)
@@ -216,7 +228,10 @@ class _Reader:
                 number = self.table.number(row, joined[1] if joined and not size else cell)
                 if number is not None or size:
                     of_cell = joined[2] if joined and not size else unit or heads.units.get(f"axle{index}", "")
-                    self._add_number(row, self._name(row, text, axle, side), cell if size else number, of_cell)
+                    name = self._name(row, text, *(("", "") if is_whole else (axle, side)))
+                    self._add_number(row, name, cell if size else number, of_cell)
+                elif any(map(str.isdigit, cell)):
+                    self.content.left_out.append((row.where, f"{text!r}: {cell!r} is not understood"))
             return True
         after = [(index, value) for index, value in enumerate(values) if value is not None and index not in skipped]
         if heads is not None and "value" in heads.columns:
@@ -241,9 +256,15 @@ class _Reader:
         index, value = after[0]
         following = next((row.cells[other] for other in range(index + 1, len(row.cells))
                           if row.cells[other] and values[other] is None), "")  # fmt: skip
+        listed = number_of(self._name(row, text))
         if unit_factor(following.strip("()[]")) is not None:
             # "sprung mass (ms), 1250, kg": the text after the value takes precedence.
             unit = following
+        elif not unit and listed is not None:
+            # A column of units before the values.
+            of_cells = ((cell, unit_factor(cell, QUANTITIES[listed[0]].dimension)) for cell in row.cells[at + 1 : index])
+            unit = next((cell for cell, found in of_cells if found is not None
+                         and found.dimension == QUANTITIES[listed[0]].dimension), "")  # fmt: skip
         if more := [row.cells[other] for other, _ in after[1:]]:
             self.content.left_out.append((row.where, f"{text!r}: the further values {', '.join(more)[:60]}; the first "
                                           "one counts"))  # fmt: skip
@@ -291,9 +312,10 @@ class _Reader:
     def _name(self, row: Row, text: str, axle: str = "", side: str = "") -> NameWords:
         """Return the words of a name, with axle and side of its columns, its column head or the title above."""
         letter = self.letters.get(row.cells[0], self.letters.get(text, ""))
-        if index := re.search(r"\(([12])\)$", text):
-            # CarSim counts axles: L_TRACK(2).
+        if index := re.search(r"\(([12])(?:,([12]))?\)$", text):
+            # CarSim counts axles and sides: L_TRACK(2), RRE(1,2).
             text, axle = text[: index.start()], AXLES[int(index[1]) - 1]
+            side = SIDES[int(index[2]) - 1] if index[2] else side
         name = name_words(text, right_letter=letter, where=row.where)
         if point_of(name) in (None, "cog") and number_of(name) is None and not QUALIFIERS & set(words_of(text)):
             plain = re.sub(r"\([^)]*\)", " ", text)

@@ -164,6 +164,12 @@ def _both_axles(row: Row, guessed: list[tuple[str, str]]) -> list[Row]:
     filled = [index for index, cell in enumerate(row.cells) if cell]
     if len(filled) < 2 or _is_number(row.cells[filled[0]]):
         return [row]
+    if "inertia" in words_of(row.cells[filled[0]]) and len(numbers := [c for c in row.cells if NUMBER.fullmatch(c)]) == 3:
+        prefix = "sprung " if {"body", "sprung"} & set(words_of(row.cells[filled[0]])) else ""
+        units = [cell for cell in row.cells[1:] if cell and cell not in numbers][:1]
+        guessed.append((row.where, f"{row.cells[filled[0]]!r}: Ixx, Iyy, Izz"))
+        return [Row(where=row.where, sheet=row.sheet, cells=(f"{prefix}I{axis}{axis}", value, *units), is_loose=True)
+                for axis, value in zip("xyz", numbers, strict=True)]  # fmt: skip
     name = row.cells[filled[0]]
     index = next((index for index in filled[1:] if re.match(r"[+-]?\d", row.cells[index])), 0)
     cell = row.cells[index]
