@@ -61,9 +61,11 @@ def test_numbers_of_a_layout(case, tmp_path):
 
 
 def test_further_values_of_a_row_are_left_out_by_name(tmp_path):
-    table = read(tmp_path, "Parameter,Unladen,Laden,Unit\nTotal mass,1400,1800,kg\n", name="car.csv")
+    table = read(tmp_path, "Parameter,Car A,Car B,Unit\nTotal mass,1400,1800,kg\n", name="car.csv")
     assert table.numbers["kerb_mass"] == 1400.0
     assert any("further values 1800" in text for _, text in table.left_out)
+    table = read(tmp_path, "Parameter,Laden,Unladen,Unit\nTotal mass,1800,1400,kg\n", name="car.csv")
+    assert table.numbers["kerb_mass"] == 1400.0 and any("'Laden'" in text for _, text in table.left_out)
 
 
 def test_a_motion_ratio_above_one_is_a_guess(tmp_path):

@@ -11,8 +11,8 @@ import re
 from pathlib import Path
 
 from vehicle.errors import DataError
-from vehicle.signals.formats.text import read_text
 from vehicle.signals.formats.teim_orbit import UNITS
+from vehicle.signals.formats.text import read_text
 from vehicle.studies.tables.name_words import AXLES, NameWords, name_words
 from vehicle.studies.tables.statements import Number, Point, Statements
 

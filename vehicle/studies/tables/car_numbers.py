@@ -180,7 +180,7 @@ def _cog_and_inertia(table: _Numbers, points: Mapping[str, Any]) -> None:
     height, sprung_height = table.get("cog_height"), table.get("sprung_cog_height")
     sprung_a = table.get("sprung_cog_x", "front")
     if table.of_body and sprung_a is None and sprung_height is None and (a is not None or height is not None):
-        table.guess("sprung_mass", "", "centre of gravity: of the sprung mass, because the mass of the car is not stated")
+        table.guess("sprung_mass", "", "centre of gravity: of the sprung mass, whose mass is stated alone")
         a, height, sprung_a, sprung_height = None, None, a, height
     cog = points.get("cog")
     if cog is not None:

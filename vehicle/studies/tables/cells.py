@@ -21,7 +21,9 @@ _POINTS = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+")
 """Number with points between thousands where the comma is decimal: "1.280"."""
 _GROUPS = re.compile(r"(?<![\d.,])(\d{1,3})((?:[ '\u2019\u202f\u00a0]\d{3})+)(?=[.,]\d|\D|$)(?! *\d)")
 """Thousands with blanks or apostrophes between them: 1 450, 1'450."""
-_ASSIGNED = re.compile(r"\s*([A-Za-z_][\w.]*)\s*=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*;?\s*(?:(?:[%#!]|//)\s*(.*))?")
+_VECTOR = re.compile(r"([\[({]?)\s*([+-]?[\d.]+)\s*[,;/ ]\s*([+-]?[\d.]+)\s*[,;/ ]\s*([+-]?[\d.]+)\s*[\])}]?")
+"""Three coordinates in one cell: "(0, 750, 300)", "0/750/300"."""
+_ASSIGNED = re.compile(r"\s*([A-Za-z_][\w. ]*?)\s*[=:]\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?|\[[^\]]+\])\s*;?\s*(?:(?:[%#!]|//)\s*(.*))?")
 """Assignment of a script with its remark: "m = 1400; % mass [kg]"."""
 WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%°\"(/].*)")
 """Number and unit in one cell: "1250 kg"."""
@@ -92,7 +94,7 @@ def read_cells(path: Path) -> CellTable:
         ]
     else:
         rows = _text_rows(path)
-    rows = [replace(row, cells=tuple(_plain(cell) for cell in row.cells)) for row in rows]
+    rows = [replace(row, cells=tuple(part for cell in row.cells for part in _parts(_plain(cell)))) for row in rows]
     if not any(NUMBER.fullmatch(cell) or WITH_UNIT.fullmatch(cell) for row in rows for cell in row.cells):
         raise DataError(f"{path}: has no cell with a number; save names, values and units as CSV or XLSX")
     numbers = [match[1] if (match := WITH_UNIT.fullmatch(cell)) else cell for row in rows for cell in row.cells]
@@ -109,6 +111,12 @@ def _plain(cell: str) -> str:
     if not re.match(r"[+-]?\d", text):
         return text
     return _GROUPS.sub(lambda match: match[1] + re.sub(r"\D", "", match[2]), text)
+
+
+def _parts(cell: str) -> tuple[str, ...]:
+    """Return the three coordinates of a cell, or the cell."""
+    match = _VECTOR.fullmatch(cell)
+    return match.groups()[1:] if match and (match[1] or "/" in cell) else (cell,)
 
 
 def _assignments(lines: list[str], path: Path) -> list[Row]:
@@ -159,7 +167,10 @@ def _blank_cells(line: str) -> list[str]:
     terms = line.split()
     first = next((index for index, word in enumerate(terms) if NUMBER.fullmatch(word)), len(terms))
     name = " ".join(terms[:first]).rstrip("=:").strip()
-    return ([name] if name else []) + terms[first:]
+    last = max((index for index, word in enumerate(terms) if NUMBER.fullmatch(word)), default=first) + 1
+    # "N s/m" is one unit.
+    unit = next((end for end in range(len(terms), last, -1) if unit_factor(" ".join(terms[last:end])) is not None), last)
+    return ([name] if name else []) + terms[first:last] + [" ".join(terms[last:unit])] * (unit > last) + terms[unit:]
 
 
 def _comma(cells: list[str]) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from vehicle.studies.tables.cell_units import name_and_unit
 from vehicle.studies.tables.cells import Row
 from vehicle.studies.tables.name_words import AXLES, CORNERS, SIDES, words_of
+from vehicle.studies.tables.number_names import QUALIFIERS
 
 COLUMNS = {
     "name": "keyword name point hardpoint parameter quantity description bezeichnung punkt variable item property "
@@ -41,6 +42,11 @@ class Heads:
         return triples(self.columns)
 
     @property
+    def limits(self) -> list[int]:
+        """Return the columns of limits and of the laden car: "GVW", "max"."""
+        return [index for key, index in self.columns.items() if key.startswith("skip") and key != "skip"]
+
+    @property
     def is_curve(self) -> bool:
         """Return True for the velocities and forces of a damper."""
         return {"velocity", "force"} <= set(self.columns)
@@ -66,6 +72,7 @@ def read_heads(row: Row) -> Heads | None:
     units: dict[str, str] = {}
     axles: dict[int, tuple[str, str]] = {}
     names: list[int] = []
+    has_velocity = any((plain := words_of(cell)) and plain[0] in VELOCITY for cell in row.cells)
     for index, cell in enumerate(row.cells):
         text, unit = name_and_unit(cell)
         plain = words_of(text)
@@ -77,10 +84,14 @@ def read_heads(row: Row) -> Heads | None:
             continue
         sort = coordinate[1].lower() if coordinate else next((KINDS[word] for word in text.lower().split()
                                                               if word in KINDS), "")  # fmt: skip
+        if sort in ("axle", "side") and {*AXLES, *SIDES} & set(plain):
+            sort = ""  # "Rear axle" is a title.
         if not sort and plain and plain[0] in VELOCITY:
             sort = "velocity"
-        elif not sort and plain and plain[0] in FORCE and "velocity" in columns:
+        elif not sort and plain and plain[0] in FORCE and has_velocity:
             sort = "force"
+        elif not sort and QUALIFIERS & set(plain):
+            sort = f"skip{index}"
         elif not sort and (axle := axle_of(plain)) is not None:
             axles[index] = axle
         if sort == "name":
@@ -93,7 +104,8 @@ def read_heads(row: Row) -> Heads | None:
     heads = Heads(columns=columns, units=units, axles=axles, width=len(row.cells), names=names)
     points = {"x", "y", "z"} <= set(columns)
     has_value = "value" in columns and sum(map(bool, row.cells)) > 1
-    if not (points or heads.triples or heads.is_curve or has_value or len(axles) > 1):
+    has_limits = {"name", "unit"} <= set(columns) and bool(heads.limits)
+    if not (points or heads.triples or heads.is_curve or has_value or has_limits or len(axles) > 1):
         return None
     if "name" not in columns:
         taken = {*columns.values(), *(() if points else axles)}

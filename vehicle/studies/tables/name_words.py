@@ -25,7 +25,7 @@ PLAIN: dict[str, str] = {
     "coil": "spring", "arb": "bar", "stabilizer": "bar", "stabiliser": "bar", "stabi": "bar", "stabilisator": "bar",
     "antiroll": "bar", "antirollbar": "bar", "sway": "bar", "swaybar": "bar", "rollbar": "bar",
     "droplink": "droplink", "endlink": "droplink", "pendelstütze": "droplink", "trailingarm": "trailing arm",
-    "längslenker": "trailing arm", "upright": "knuckle", "radträger": "knuckle", "hub": "knuckle",
+    "längslenker": "trailing arm", "lager": "", "punkt": "", "stützlager": "top", "domlager": "top", "upright": "knuckle", "radträger": "knuckle", "hub": "knuckle",
     # Places.
     "outboard": "outer", "outside": "outer", "aussen": "outer", "außen": "outer", "inboard": "inner",
     "inside": "inner", "innen": "inner", "upr": "upper", "oben": "upper", "top": "top", "tower": "top", "dom": "top",
@@ -40,7 +40,8 @@ PLAIN: dict[str, str] = {
     "weight": "mass", "masse": "mass", "gewicht": "mass", "curb": "kerb", "leer": "kerb", "car": "vehicle",
     "fahrzeug": "vehicle", "whole": "total", "overall": "total", "gesamt": "total", "stiffness": "rate",
     "steifigkeit": "rate", "federrate": "spring rate", "radbezogen": "wheel", "constant": "rate", "konstante": "rate",
-    "dämpfung": "damping", "damp": "damping", "ungefedert": "unsprung", "gefedert": "sprung", "aufbau": "body",
+    "dämpfung": "damping", "dämpfungsmaß": "damping ratio", "dämpfungsgrad": "damping ratio", "damp": "damping",
+    "ungefedert": "unsprung", "gefedert": "sprung", "aufbau": "body",
     "radstand": "wheelbase", "spurweite": "track", "spur": "track", "tread": "track", "width": "", "cg": "cog",
     "com": "cog", "schwerpunkt": "cog", "höhe": "height", "hoehe": "height", "abstand": "distance",
     "trägheit": "inertia", "massenträgheit": "inertia", "moment": "moment", "moi": "inertia", "last": "load",

@@ -13,7 +13,7 @@ from vehicle.studies.tables.cells import WITH_UNIT, CellTable, Row, read_cells
 from vehicle.studies.tables.headers import Heads, read_heads
 from vehicle.studies.tables.name_words import AXLES, SIDES, NameWords, name_words, right_letters, words_of
 from vehicle.studies.tables.number_names import QUALIFIERS, QUANTITIES, number_of
-from vehicle.studies.tables.point_names import point_of
+from vehicle.studies.tables.point_names import is_template_name, point_of
 from vehicle.studies.tables.turned_numbers import TYRE_SIZE, turned_numbers
 from vehicle.studies.tables.turned_points import turned_points
 from vehicle.studies.tables.tyre_file import TyreFile
@@ -117,6 +117,7 @@ class _Reader:
     axle: str = ""
     side: str = ""
     unit: str = ""
+    per_wheel: str = ""
     placed: bool = False
     curve: list[tuple[float, float]] = field(default_factory=list)
     coordinates: dict[tuple[str, str, str], dict[str, tuple[float, str, str, NameWords]]] = field(default_factory=dict)
@@ -135,7 +136,8 @@ class _Reader:
             elif not self._row(row):
                 text = " ".join(cells)
                 is_remark = bool(length_unit(text) or _ORIGIN.search(text) or stated_axes([text], row.where))
-                if len(cells) > 1 and any(map(str.isdigit, " ".join(cells[1:]))) and not is_remark:
+                has_number = any(map(str.isdigit, " ".join(cells[1:]))) or re.search(r"[:=] *\d", text)
+                if has_number and not is_remark:
                     self.content.left_out.append((row.where, f"{', '.join(cells)[:60]!r}: not understood"))
                 self._remark(text, title=not is_remark)
         for (_, axle, side), parts in self.coordinates.items():
@@ -186,6 +188,8 @@ class _Reader:
             self._title(title)
         self.unit = unit or self.unit
         self.heads = heads
+        for index in heads.limits:
+            self.content.left_out.append((row.where, f"column {row.cells[index]!r}: not of the empty car"))
         return True
 
     def _point_row(self, row: Row, values: Sequence[float | None]) -> bool:
@@ -215,7 +219,8 @@ class _Reader:
             at = next((index for index in others if number_of(self._name(row, name_and_unit(row.cells[index])[0]))), at)
         text, unit = name_and_unit(row.cells[at])
         unit = self._cell(row, "unit") or unit
-        skipped = set() if heads is None else {heads.columns[key] for key in ("unit", "skip") if key in heads.columns}
+        columns = {} if heads is None else heads.columns
+        skipped = {index for key, index in columns.items() if key == "unit" or key.startswith("skip")}
         if heads is not None and heads.axles:
             filled = [index for index in heads.axles if index < len(row.cells) and row.cells[index]]
             whole = number_of(name_words(text, right_letter=""))
@@ -236,7 +241,7 @@ class _Reader:
         after = [(index, value) for index, value in enumerate(values) if value is not None and index not in skipped]
         if heads is not None and "value" in heads.columns:
             after = [(index, value) for index, value in after if index == heads.columns["value"]]
-        if len(after) == 3 and after[2][0] - after[0][0] == 2:
+        if len(after) == 3 and after[2][0] - after[0][0] == 2 and number_of(self._name(row, text)) is None:
             self._add_point(row, self._name(row, text), tuple(value for _, value in after), unit or self.unit)  # type: ignore[arg-type]
             return True
         if heads is None and self.placed:
@@ -262,9 +267,9 @@ class _Reader:
             unit = following
         elif not unit and listed is not None:
             # A column of units before the values.
-            of_cells = ((cell, unit_factor(cell, QUANTITIES[listed[0]].dimension)) for cell in row.cells[at + 1 : index])
-            unit = next((cell for cell, found in of_cells if found is not None
-                         and found.dimension == QUANTITIES[listed[0]].dimension), "")  # fmt: skip
+            dimension = QUANTITIES[listed[0]].dimension
+            of_cells = ((cell, unit_factor(cell, dimension)) for cell in row.cells[at + 1 : index])
+            unit = next((cell for cell, found in of_cells if found and found.dimension == dimension), "")
         if more := [row.cells[other] for other, _ in after[1:]]:
             self.content.left_out.append((row.where, f"{text!r}: the further values {', '.join(more)[:60]}; the first "
                                           "one counts"))  # fmt: skip
@@ -281,7 +286,7 @@ class _Reader:
                 self.coordinates.setdefault((key, name.axle, name.side), {})[last] = (value, unit, row.where, point)
                 return
         assert value is not None  # fmt: skip
-        note = " ".join(cell for cell in row.cells if name_and_unit(cell)[0] != name.text)
+        note = " ".join((*(cell for cell in row.cells if name_and_unit(cell)[0] != name.text), self.per_wheel))
         self.content.numbers.append(Number(where=row.where, name=name, value=value, unit=unit, note=note))
 
     def _joined(self, parts: dict[str, tuple[float, str, str, NameWords]], axle: str, side: str) -> None:
@@ -324,6 +329,9 @@ class _Reader:
             name = name_words(plain, right_letter=letter, where=row.where)
         column = words_of(self._cell(row, "axle"))
         axle = axle or next((word for word in column if word in AXLES), "")
+        if (name.has("link") or is_template_name(text)) and name.axle and (axle or self.axle):
+            # "Lower front link" below the title of the rear axle: front is its place.
+            name = replace(name, terms=(*name.terms, name.axle), axle="")
         said = words_of(self._cell(row, "side"))
         both = {"left", "right"} <= set(said)
         side = side or ("" if both else next((word for word in said if word in ("left", "right", "single")), ""))
@@ -353,5 +361,6 @@ class _Reader:
         ends = {word for word in terms if word in AXLES}
         sides = {word for word in terms if word in ("left", "right")}
         self.placed = False
+        self.per_wheel = "per wheel" if {"quarter", "corner"} & set(terms) else ""
         self.axle = ends.pop() if len(ends) == 1 else ""
         self.side = sides.pop() if len(sides) == 1 else ""

@@ -20,7 +20,10 @@ GRAVITY = 9.81
 ONE_WHEEL, WHOLE_AXLE = 55.0, 75.0
 """Unsprung mass without a word [kg]: up to the first of a wheel, from the second on of an axle."""
 
-_OF_BOTH_WHEELS = re.compile(r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bper pair\b")
+LIGHT_AXLE, HEAVY_WHEEL = 250.0, 600.0
+"""Sprung mass over an axle [kg]: lightest of an axle, and heaviest of a wheel."""
+
+_OF_BOTH_WHEELS = re.compile(r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bpair\b")
 """Words of a rate of both wheels of an axle together."""
 
 _SYSTEM = re.compile(r"(?P<si>\bSI\b(-?units|-?Einheiten)?)|\b(US|imperial|english|customary) (customary )?units\b|"
@@ -85,6 +88,7 @@ def read_numbers(content: Statements, result: CarNumbers) -> Values:
     values: Values = {}
     corners: dict[tuple[str, str], dict[str, Stated]] = {}
     per_wheel, symbols = _by_the_sum(content), list[str]()
+    per_wheel = _by_the_sizes(content) if per_wheel is None else per_wheel
     for row in content.numbers:
         listed = number_of(row.name)
         if listed is None and row.name.axle and row.name.axle not in words_of(row.name.text):
@@ -134,6 +138,14 @@ def read_numbers(content: Statements, result: CarNumbers) -> Values:
     for (key, axle), sides in corners.items():
         values[key, axle] = _both_strokes(sides, result) if set(STROKES) & set(sides) else (
             _both_sides(key, axle, sides, result))  # fmt: skip
+    loaded = {axle for key, axle in values if key == "tyre_radius"}
+    for axle in [axle for key, axle in values if key == "rolling_radius"]:
+        rolling = values.pop(("rolling_radius", axle))
+        if loaded:
+            result.left_out.append((rolling.where, f"{rolling.text}: the loaded radius is stated"))
+        else:
+            values["tyre_radius", axle] = rolling
+            result.guessed.append((rolling.where, f"{rolling.text}: taken as the loaded radius"))
     return values
 
 
@@ -194,14 +206,29 @@ def _by_the_sum(content: Statements) -> bool | None:
     return errors[1] < errors[0] if min(errors) < AGREE * kerb else None
 
 
+def _by_the_sizes(content: Statements) -> bool | None:
+    """Return whether unsprung masses of unclear size are of a wheel, as another one of the file clearly is."""
+    sizes = []
+    for row in content.numbers:
+        listed, unit = number_of(row.name), unit_factor(row.unit or "kg", MASS)
+        said = {*row.name.terms, *words_of(row.name.text), *words_of(row.note)}
+        if listed is not None and listed[0] == "unsprung_mass" and isinstance(row.value, float) and unit is not None \
+                and (listed[1] or row.name.axle) and not row.name.side \
+                and not said & (_AXLE | set(PER_WHEEL)):  # fmt: skip
+            sizes.append(row.value * unit.factor)
+    clear = {size <= ONE_WHEEL for size in sizes if not ONE_WHEEL < size < WHOLE_AXLE}
+    return clear.pop() if len(clear) == 1 and any(ONE_WHEEL < size < WHOLE_AXLE for size in sizes) else None
+
+
 def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_sum: bool | None) -> Stated:
     """Return the numbers of an axle with masses for both wheels and rates for one; by_the_sum: see above."""
     said = f"{row.name.text} {row.note}".lower()
     if QUANTITIES[key].dimension in (RATE, DAMPING) and _OF_BOTH_WHEELS.search(said):
         return replace(value, value=0.5 * value.value, text=f"1/2 x {value.text}")
     if row.name.has("heave") and not set(words_of(said)) & set(PER_WHEEL):
-        raise DataError(f"{row.where}: {row.name.text!r} may be of a wheel or of both; write \"per wheel\" or \"per axle\"")
-    if key not in ("unsprung_mass", "axle_load", "sprung_mass") or row.name.side in ("left", "right"):
+        raise DataError(f"{row.where}: {row.name.text!r} may be of a wheel or of both; write \"per wheel\" or "
+                        "\"per axle\" in its name")  # fmt: skip
+    if key not in ("unsprung_mass", "axle_load", "sprung_mass", "kerb_mass") or row.name.side in ("left", "right"):
         return value
     terms, axle = {*row.name.terms, *row.unit.lower().split(), *words_of(row.note)}, row.name.axle
     per_wheel = bool(terms & set(PER_WHEEL))
@@ -218,6 +245,15 @@ def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_su
         result.guessed.append(
             (row.where, f"{row.name.text!r}: of {'a wheel' if per_wheel else 'an axle'}, by its size")
         )
+    if key == "sprung_mass" and axle and not per_wheel and not _AXLE & (terms | set(words_of(row.name.text))):
+        if LIGHT_AXLE < value.value < HEAVY_WHEEL:
+            raise DataError(f"{row.where}: {row.name.text!r} = {value.value:g} kg may be of a wheel or of an axle; "
+                            "write \"per wheel\" or \"axle\" in its name")  # fmt: skip
+        per_wheel = value.value <= LIGHT_AXLE
+        text = f"{row.name.text!r}: of {'a wheel' if per_wheel else 'an axle'}, by its size"
+        result.guessed.append((row.where, text))
+    if "occupied" in words_of(row.name.text):
+        result.guessed.append((row.where, f"{row.name.text!r}: the mass of the car, with its driver"))
     if per_wheel and (key != "sprung_mass" or axle or terms & {"corner", "quarter"}):
         return Stated(value=2.0 * value.value, where=value.where, text=f"2 x {value.text}")
     return value

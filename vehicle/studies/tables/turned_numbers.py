@@ -1,12 +1,14 @@
 """Numbers in columns, in a matrix or two in a cell, turned into rows of name, value and unit.
 
-Axle,Track [mm],Spring rate [N/mm]     Parameter,Front,,Rear,       Inertia [kg m2],x,y,z     Track F/R,1540/1530,mm
-Front,1540,25                          ,Value,Unit,Value,Unit       x,500,0,-30               Distribution,55/45
-Rear,1530,28                           Track,1540,mm,1.53,m         y,0,2000,0                v [mm/s],Rebound,Compression
+Axle,Track [mm],Spring rate [N/mm]    Parameter,Front,,Rear,    Inertia [kg m2],x,y,z    Track F/R,1540/1530,mm
+Front,1540,25                         ,Value,Unit,Value,Unit    x,500,0,-30              Distribution,55/45
+Rear,1530,28                          Track,1540,mm,1.53,m      y,0,2000,0               v [mm/s],Rebound,Compression
 """
 
+import itertools
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from vehicle.errors import DataError
 from vehicle.studies.tables.cell_units import name_and_unit
@@ -21,6 +23,7 @@ _BOTH = re.compile(r"[(\[ ,]*\b(f|v|va|fr|front|vorn|vorne|r|h|ha|rear|hinten)\b
                    r"\b(f|v|va|front|vorn|vorne|r|rr|h|ha|rear|hinten)\b[)\] ]*", re.IGNORECASE)  # fmt: skip
 """Words of both axles in one name: "Track (F/R)"."""
 _PART = re.compile(r"(?P<value>[+-]?[\d.,]+)\s*(?P<unit>%|[a-zA-Z][^\s/:]*(?:/[a-zA-Z]+)?)?\s*(?P<axle>[a-zA-Z]+)?\.?")
+STROKES = {"rebound", "compression"}
 _FRONT = frozenset({"f", "v", "va", "fr", "front", "vorn", "vorne"})
 
 
@@ -31,11 +34,13 @@ def turned_numbers(rows: Sequence[Row], guessed: list[tuple[str, str]]) -> tuple
         DataError: a matrix of inertia is not symmetric.
     """
     result: list[Row] = []
+    rows = _without_counts(rows)
     index = 0
     while index < len(rows):
         row, block = rows[index], rows[index + 1 : index + 4]
         after = rows[index + 1 :]
-        length = next((n for n, other in enumerate(after) if not any(other.cells) or other.sheet != row.sheet), len(after))
+        ends = (n for n, other in enumerate(after) if not any(other.cells) or other.sheet != row.sheet)
+        length = next(ends, len(after))
         below = rows[index + 1 : index + 1 + length]
         if matrix := _inertia(row, block):
             result += matrix
@@ -55,6 +60,15 @@ def _row(row: Row, *cells: str) -> Row:
 
 def _is_number(cell: str) -> bool:
     return bool(NUMBER.fullmatch(cell) or WITH_UNIT.fullmatch(cell))
+
+
+def _without_counts(rows: Sequence[Row]) -> Sequence[Row]:
+    """Return the rows without a first column that counts them, 1, 2, 3, ..."""
+    counted = [row for row in rows if any(row.cells)]
+    counts = [row.cells[0] for row in counted if row.cells[0].isdigit()]
+    if len(counts) < 3 or counts != [str(n) for n in range(1, len(counts) + 1)] or len(counted) - len(counts) > 1:
+        return rows
+    return [replace(row, cells=row.cells[1:]) for row in rows]
 
 
 def _inertia(head: Row, block: Sequence[Row]) -> list[Row]:
@@ -129,11 +143,16 @@ def _quantities(head: Row, below: Sequence[Row]) -> list[Row]:
 
 def _damper(head: Row, below: Sequence[Row]) -> list[Row]:
     """Return blocks of velocity and force from columns of both axles, or of rebound and compression."""
+    if len(head.cells) > 2 and _is_number(head.cells[1]) and {*words_of(head.cells[0])[:1]} & {*VELOCITY}:
+        # Velocities along a row, forces below them.
+        turned = [replace(head, cells=cells) for cells in itertools.zip_longest(
+            *(row.cells for row in (head, *below) if row.cells[0]), fillvalue="")]  # fmt: skip
+        head, below = turned[0], turned[1:]
     names = [name_and_unit(cell) for cell in head.cells]
     words = [words_of(text) for text, _ in names]
     velocity = next((index for index, plain in enumerate(words) if plain and plain[0] in VELOCITY), -1)
     others = [index for index, plain in enumerate(words) if plain and index != velocity]
-    if velocity < 0 or len(others) < 2 or not below:
+    if velocity < 0 or not others or (len(others) < 2 and not STROKES & set(words[others[0]])) or not below:
         return []
     result: list[Row] = []
     for axle in ("", *AXLES):
@@ -164,7 +183,8 @@ def _both_axles(row: Row, guessed: list[tuple[str, str]]) -> list[Row]:
     filled = [index for index, cell in enumerate(row.cells) if cell]
     if len(filled) < 2 or _is_number(row.cells[filled[0]]):
         return [row]
-    if "inertia" in words_of(row.cells[filled[0]]) and len(numbers := [c for c in row.cells if NUMBER.fullmatch(c)]) == 3:
+    numbers = [cell for cell in row.cells if NUMBER.fullmatch(cell)]
+    if "inertia" in words_of(row.cells[filled[0]]) and len(numbers) == 3:
         prefix = "sprung " if {"body", "sprung"} & set(words_of(row.cells[filled[0]])) else ""
         units = [cell for cell in row.cells[1:] if cell and cell not in numbers][:1]
         guessed.append((row.where, f"{row.cells[filled[0]]!r}: Ixx, Iyy, Izz"))
