@@ -212,7 +212,7 @@ loaded tyre radius,0.305,m
 )  # fmt: skip
 
 SEVEN_DOF = MadeTable(
-    "ride model of a passenger car, ISRN Mechanical Engineering 2015, 974020, table 2: distances of the CoG of the body",
+    "ride model of a passenger car, ISRN Mechanical Engineering 2015, 974020, table 2; CoG of the body",
     "seven_dof.xlsx",
     """[Data]
 Full car model
@@ -331,7 +331,8 @@ Reifensteifigkeit;175;N/mm
 Reifenhalbmesser (statisch);352,0;mm
 Schwerpunkthöhe;660,0;mm
 """,
-    2631.0, 2321.0 * (1.0 - 1.204 / 2.36) + 160.0, (160.0, 150.0), (112.9e3 * 0.45176**2, 28e3), (175e3, 175e3), ride=0.02,
+    2631.0, 2321.0 * (1.0 - 1.204 / 2.36) + 160.0, (160.0, 150.0), (112.9e3 * 0.45176**2, 28e3),
+    (175e3, 175e3), ride=0.02,
 )  # fmt: skip
 
 TABLES = (ESCORT, BMW, VANAGON, HALF_CAR, SPORTS, CORNERS, CHRONO, SEVEN_DOF, HEAVE, SCRIPT, US_UNITS, WISHBONES)

@@ -57,8 +57,10 @@ def test_a_published_table_gives_its_loads_and_ride_frequencies_and_its_own_tabl
         source=f"publication: {table.source}; closed form of its numbers", rel=table.ride, unit="Hz",
     )  # fmt: skip
     # Round trip: its own table, in the words of the program, has the same numbers, and gives the same car.
-    own = tmp_path / "car" / "table.csv"
-    assert numbers(own) == pytest.approx(numbers(file), rel=2e-5)
+    own, read = tmp_path / "car" / "table.csv", numbers(file)
+    again = numbers(own)
+    # Newton's method meets masses within 0.1 %.
+    assert {key: again[key] for key in read} == pytest.approx(read, rel=1e-3)
     if table in (CHRONO, HEAVE, WISHBONES):
         again = made(tmp_path / "again", "--table", str(own))
         assert of_car(again)[0] == pytest.approx(loads, rel=1e-4)

@@ -29,6 +29,10 @@ def table_lines(result: "NewCar", template: TemplateCar, source: CarTable) -> It
             # "axle": an unsprung mass without it may be of a wheel.
             name = check.name.replace("unsprung_mass", "unsprung_mass_axle")
             yield f"{name},,{check.value:.9g},{check.unit}"
+    # The radius follows from these two, which have no check.
+    for name, unit in (("tyre_free_radius", "m"), ("tyre_size", "")):
+        if name in source.numbers:
+            yield f"{name},,{source.numbers[name]},{unit}"
     yield ""
     yield ",".join(POINT_HEAD)
     for word, points in source.points.items():

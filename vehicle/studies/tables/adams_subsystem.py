@@ -56,7 +56,7 @@ def read_subsystem(path: Path) -> Statements:
             elif key == "USAGE":
                 usage = value
             elif key == "PROPERTY_FILE":
-                content.left_out.append((where, f"{usage}: {value}; name it in the vehicle file as curve = \"FILE\""))
+                content.left_out.append((where, f'{usage}: {value}; name it in the vehicle file as curve = "FILE"'))
             elif key == "MASS" and usage:
                 unit = {"kilogram": "kg", "pound_mass": "lb"}.get(units.get("MASS", "kg"), units.get("MASS", "kg"))
                 content.numbers.append(Number(where=where, name=_named(f"{usage} mass", axle, ""), value=float(value),

@@ -273,8 +273,9 @@ def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
         wheel, why = ride * tyre / (tyre - ride), ("ride_rate", axle)
     lumped = table.get("suspension_rate", axle)
     if wheel is None and lumped is not None:
-        wheel, why = lumped, ("suspension_rate", axle)
-        table.guess(*why, f"{key_words(*why)}: at the wheel")
+        why = ("suspension_rate", axle)
+        wheel = lumped if ratio is None else ratio**2 * lumped
+        table.guess(*why, f"{key_words(*why)}: at the {'wheel' if ratio is None else 'spring, by its motion ratio'}")
     spring = table.get("spring_rate", axle)
     if spring is not None and wheel is None:
         why = ("spring_rate", axle)

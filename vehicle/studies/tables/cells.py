@@ -23,7 +23,8 @@ _GROUPS = re.compile(r"(?<![\d.,])(\d{1,3})((?:[ '\u2019\u202f\u00a0]\d{3})+)(?=
 """Thousands with blanks or apostrophes between them: 1 450, 1'450."""
 _VECTOR = re.compile(r"([\[({]?)\s*([+-]?[\d.]+)\s*[,;/ ]\s*([+-]?[\d.]+)\s*[,;/ ]\s*([+-]?[\d.]+)\s*[\])}]?")
 """Three coordinates in one cell: "(0, 750, 300)", "0/750/300"."""
-_ASSIGNED = re.compile(r"\s*([A-Za-z_][\w. ]*?)\s*[=:]\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?|\[[^\]]+\])\s*;?\s*(?:(?:[%#!]|//)\s*(.*))?")
+_ASSIGNED = re.compile(r"\s*([A-Za-z_][\w. ]*?)\s*[=:]\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?|\[[^\]]+\])\s*;?\s*"
+                       r"(?:(?:[%#!]|//)\s*(.*))?")  # fmt: skip
 """Assignment of a script with its remark: "m = 1400; % mass [kg]"."""
 WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%°\"(/].*)")
 """Number and unit in one cell: "1250 kg"."""
@@ -169,7 +170,8 @@ def _blank_cells(line: str) -> list[str]:
     name = " ".join(terms[:first]).rstrip("=:").strip()
     last = max((index for index, word in enumerate(terms) if NUMBER.fullmatch(word)), default=first) + 1
     # "N s/m" is one unit.
-    unit = next((end for end in range(len(terms), last, -1) if unit_factor(" ".join(terms[last:end])) is not None), last)
+    ends = (end for end in range(len(terms), last, -1) if unit_factor(" ".join(terms[last:end])) is not None)
+    unit = next(ends, last)
     return ([name] if name else []) + terms[first:last] + [" ".join(terms[last:unit])] * (unit > last) + terms[unit:]
 
 

@@ -90,7 +90,7 @@ def read_heads(row: Row) -> Heads | None:
             sort = "velocity"
         elif not sort and plain and plain[0] in FORCE and has_velocity:
             sort = "force"
-        elif not sort and QUALIFIERS & set(plain):
+        elif not sort and (QUALIFIERS - {"tyre"}) & set(plain):
             sort = f"skip{index}"
         elif not sort and (axle := axle_of(plain)) is not None:
             axles[index] = axle

@@ -25,7 +25,8 @@ PLAIN: dict[str, str] = {
     "coil": "spring", "arb": "bar", "stabilizer": "bar", "stabiliser": "bar", "stabi": "bar", "stabilisator": "bar",
     "antiroll": "bar", "antirollbar": "bar", "sway": "bar", "swaybar": "bar", "rollbar": "bar",
     "droplink": "droplink", "endlink": "droplink", "pendelstütze": "droplink", "trailingarm": "trailing arm",
-    "längslenker": "trailing arm", "lager": "", "punkt": "", "stützlager": "top", "domlager": "top", "upright": "knuckle", "radträger": "knuckle", "hub": "knuckle",
+    "längslenker": "trailing arm", "lager": "", "punkt": "", "stützlager": "top", "domlager": "top",
+    "upright": "knuckle", "radträger": "knuckle", "hub": "knuckle",
     # Places.
     "outboard": "outer", "outside": "outer", "aussen": "outer", "außen": "outer", "inboard": "inner",
     "inside": "inner", "innen": "inner", "upr": "upper", "oben": "upper", "top": "top", "tower": "top", "dom": "top",

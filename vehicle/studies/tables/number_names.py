@@ -73,10 +73,10 @@ QUANTITIES: dict[str, Quantity] = {
                                optional="wheel corner side each total one assembly suspension quarter"),
     "kerb_mass": _quantity("mass|kerb mass", MASS, (100, 2e4),
                            optional="vehicle total kerb empty unladen ready occupied"),
-    "axle_load": _quantity("mass|load|axle load", MASS, (20, 2e4), of_axle=True,
+    "axle_load": _quantity("mass|load|axle load", MASS, (100, 2e4), of_axle=True,
                            optional="vehicle kerb wheel corner total empty"),
-    "front_share": _quantity("mass distribution|distribution|mass share|load distribution", NONE, (0.2, 0.8),
-                             of_axle=None, optional="kerb total vehicle"),
+    "front_share": _quantity("mass distribution|distribution|mass share|load distribution|share|mass fraction",
+                             NONE, (0.2, 0.8), of_axle=None, optional="kerb total vehicle"),
     "wheelbase": _quantity("wheelbase", LENGTH, (1.0, 8.0), optional="vehicle length"),
     "track": _quantity("track", LENGTH, (0.8, 3.0), of_axle=None, optional="wheel"),
     "half_track": _quantity("halftrack", LENGTH, (0.4, 1.5), of_axle=None),
@@ -128,7 +128,7 @@ QUANTITIES: dict[str, Quantity] = {
 """Numbers by key; the first that fits is taken."""
 
 SYMBOLS: dict[str, tuple[str, str]] = {
-    "m": ("kerb_mass", ""), "mass": ("kerb_mass", ""), "mv": ("kerb_mass", ""), "mtot": ("kerb_mass", ""),
+    "m": ("kerb_mass", ""), "mv": ("kerb_mass", ""), "mtot": ("kerb_mass", ""),
     "ms": ("sprung_mass", ""), "msu": ("sprung_mass", ""), "mb": ("sprung_mass", ""),
     "mus": ("unsprung_mass", ""), "muf": ("unsprung_mass", "front"), "mur": ("unsprung_mass", "rear"),
     "musf": ("unsprung_mass", "front"),

@@ -226,6 +226,8 @@ class _Reader:
             whole = number_of(name_words(text, right_letter=""))
             # "Total weight,1400,," below front and rear is the weight of the car.
             is_whole = len(filled) == 1 and whole is not None and QUANTITIES[whole[0]].of_axle is False
+            if is_whole:
+                self.content.guessed.append((row.where, f"{text!r}: of the car, in the column of one axle"))
             for index, (axle, side) in heads.axles.items():
                 cell = row.cells[index] if index < len(row.cells) else ""
                 joined = WITH_UNIT.fullmatch(cell)

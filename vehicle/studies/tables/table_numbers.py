@@ -26,7 +26,8 @@ LIGHT_AXLE, HEAVY_WHEEL = 250.0, 600.0
 _OF_BOTH_WHEELS = re.compile(r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bpair\b")
 """Words of a rate of both wheels of an axle together."""
 
-_SYSTEM = re.compile(r"(?P<si>\bSI\b(-?units|-?Einheiten)?)|\b(US|imperial|english|customary) (customary )?units\b|"
+_SYSTEM = re.compile(r"(?P<si>\bSI[ -](units?|Einheiten)\b|\bin SI\b)|"
+                     r"\b(US|imperial|english|customary) (customary )?units\b|"
                      r"\bunits?: *(US|imperial|english)\b|\bUS customary\b")  # fmt: skip
 """System of units that a remark states."""
 
@@ -222,13 +223,15 @@ def _by_the_sizes(content: Statements) -> bool | None:
 
 def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_sum: bool | None) -> Stated:
     """Return the numbers of an axle with masses for both wheels and rates for one; by_the_sum: see above."""
-    said = f"{row.name.text} {row.note}".lower()
-    if QUANTITIES[key].dimension in (RATE, DAMPING) and _OF_BOTH_WHEELS.search(said):
+    said, is_rate = f"{row.name.text} {row.note}".lower(), QUANTITIES[key].dimension in (RATE, DAMPING)
+    if is_rate and _OF_BOTH_WHEELS.search(said):
         return replace(value, value=0.5 * value.value, text=f"1/2 x {value.text}")
-    if row.name.has("heave") and not set(words_of(said)) & set(PER_WHEEL):
+    if is_rate and row.name.has("heave") and not set(words_of(said)) & set(PER_WHEEL):
         raise DataError(f"{row.where}: {row.name.text!r} may be of a wheel or of both; write \"per wheel\" or "
                         "\"per axle\" in its name")  # fmt: skip
-    if key not in ("unsprung_mass", "axle_load", "sprung_mass", "kerb_mass") or row.name.side in ("left", "right"):
+    if key == "kerb_mass" and "occupied" in words_of(row.name.text):
+        result.guessed.append((row.where, f"{row.name.text!r}: the mass of the car, with its driver"))
+    if key not in ("unsprung_mass", "axle_load", "sprung_mass") or row.name.side in ("left", "right"):
         return value
     terms, axle = {*row.name.terms, *row.unit.lower().split(), *words_of(row.note)}, row.name.axle
     per_wheel = bool(terms & set(PER_WHEEL))
@@ -252,10 +255,10 @@ def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_su
         per_wheel = value.value <= LIGHT_AXLE
         text = f"{row.name.text!r}: of {'a wheel' if per_wheel else 'an axle'}, by its size"
         result.guessed.append((row.where, text))
-    if "occupied" in words_of(row.name.text):
-        result.guessed.append((row.where, f"{row.name.text!r}: the mass of the car, with its driver"))
-    if per_wheel and (key != "sprung_mass" or axle or terms & {"corner", "quarter"}):
-        return Stated(value=2.0 * value.value, where=value.where, text=f"2 x {value.text}")
+    if per_wheel:
+        # The sprung mass of a quarter of the car, without an axle, is one of four.
+        count = 4.0 if key == "sprung_mass" and not axle else 2.0
+        return Stated(value=count * value.value, where=value.where, text=f"{count:g} x {value.text}")
     return value
 
 

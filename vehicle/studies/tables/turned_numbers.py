@@ -31,7 +31,7 @@ def turned_numbers(rows: Sequence[Row], guessed: list[tuple[str, str]]) -> tuple
     """Return the rows of a table with one number of one axle in each row; enter guesses with their places.
 
     Raises:
-        DataError: a matrix of inertia is not symmetric.
+        DataError: a matrix of inertia is not symmetric, or a damper has several columns of force.
     """
     result: list[Row] = []
     rows = _without_counts(rows)
@@ -78,7 +78,7 @@ def _inertia(head: Row, block: Sequence[Row]) -> list[Row]:
     named = [row.cells[0].lower() if row.cells else "" for row in block]
     if "inertia" not in words_of(title) or [len(row) for row in values] != [3, 3, 3]:
         return []
-    if named not in (["x", "y", "z"], ["ixx", "iyx", "izx"]) and not all(NUMBER.fullmatch(name) for name in named):
+    if named not in (["x", "y", "z"], ["ixx", "iyy", "izz"]) and not all(NUMBER.fullmatch(name) for name in named):
         return []
     if any(values[i][j] != values[j][i] for i, j in ((0, 1), (0, 2), (1, 2))):
         raise DataError(f"{head.where}: the matrix of inertia is not symmetric; correct it")
@@ -159,6 +159,10 @@ def _damper(head: Row, below: Sequence[Row]) -> list[Row]:
         columns = [index for index in others if _axle_of_force(words[index]) == axle]
         if not columns:
             continue
+        strokes = [{*words[index]} & STROKES for index in columns]
+        if len(columns) > 1 and (len(columns) > 2 or strokes[0] == strokes[1]):
+            raise DataError(f"{head.where}: several columns of force of one damper; name their axle, or rebound and "
+                            "compression, and remove the others")  # fmt: skip
         curve, unit = [], next((names[index][1] for index in columns if names[index][1]), "")
         for index in columns:
             sign = next((sign for word, sign in (("rebound", ""), ("compression", "-")) if word in words[index]), None)
@@ -200,6 +204,9 @@ def _both_axles(row: Row, guessed: list[tuple[str, str]]) -> list[Row]:
     if len(parts) > 2 or not all(parts) or not parts:
         return [row]
     both = _BOTH.search(name)
+    plain = _BOTH.sub(" ", name).strip()
+    if number_of(name_words(f"front {name_and_unit(plain)[0]}", right_letter="")) is None:
+        return [row]
     stated = [axle_of(words_of(part["axle"])) if part and part["axle"] else None for part in parts]
     if len(parts) == 1 and stated[0] is None:
         return [row]
@@ -210,7 +217,6 @@ def _both_axles(row: Row, guessed: list[tuple[str, str]]) -> list[Row]:
     else:
         axles = list(AXLES)
         guessed.append((row.where, f"{name!r} = {cell}: front / rear"))
-    plain = _BOTH.sub(" ", name).strip()
     following = row.cells[index + 1 :]
     unit = next((part["unit"] for part in parts if part and part["unit"]), "")
     rows = []
