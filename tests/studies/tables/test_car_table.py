@@ -224,7 +224,7 @@ BAD = {
     "axle or place": ("name,x,y,z\nlca rear front,0,400,200\n", "two places, one of which is the axle"),
     "no size": ("name,value\nwheelbase,26.5\n", "has no unit"),
     "wrong unit": ("name,value,unit\nwheelbase,2.6,kg\n", "needs one such as m or mm"),
-    "impossible": ("name,value,unit\nwheelbase,2600,m\n", "2600 m, must be 1 to 8 m"),
+    "impossible": ("name,value,unit\nwheelbase,2600,m\n", "2600 m, must be 1 to 4.2 m"),
     "twice": ("name,value,unit\nmass,1400,kg\ncurb weight,1500,kg\n", "two values of kerb mass"),
     "wheel or axle": ("name,value,unit\nunsprung mass front,64,kg\n", "of a wheel or of an axle"),
     "thousand or decimal": ("name;value;unit\nmass;1,450;kg\n", "thousand or a decimal"),

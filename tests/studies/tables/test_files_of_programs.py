@@ -169,6 +169,13 @@ def test_what_replaces_the_vertical_stiffness_of_a_tyre_file_is_named(tmp_path):
     assert "VERTICAL_STIFFNESS" in left_out and "PPX1" in left_out
 
 
+def test_a_steering_wheel_is_no_wheel_of_the_car(tmp_path):
+    steering = """<link name="steering_wheel"><inertial><mass value="1"/></inertial></link>
+    <joint name="column" type="fixed"><parent link="base"/><child link="steering_wheel"/></joint></robot>"""
+    table = read(written(tmp_path, "car.urdf", urdf().replace("</robot>", steering)))
+    assert (table.numbers["kerb_mass"], table.numbers["unsprung_mass_front"]) == (1531.0, 40.0)
+
+
 WRONG = [
     ("fiala.tir", TIR_52.replace("FITTYP                   =52", "PROPERTY_FILE_FORMAT = 'FIALA'"),
      "FIALA.*MF-Tyre 6.1"),

@@ -68,6 +68,9 @@ NUMBERS: dict[str, tuple[str, dict[str, float | None]]] = {
         {"track_front": 1.54, "track_rear": 1.53, "wheel_rate_front": 25e3, "wheel_rate_rear": 28e3}),
     "the car in the column of an axle": ("Item,Front,Rear,Units\nTotal weight,3000,,lb\nTrack,60,59,in\n",
                                          {"kerb_mass": 3000.0 * 0.45359237, "front_axle_load": None}),
+    "left and right below the axles": (
+        "Parameter;Vorderachse;;Hinterachse;;Einheit\n;links;rechts;links;rechts;\nRadlast;410;412;310;312;kg\n",
+        {"front_axle_load": 822.0, "rear_axle_load": 622.0}),
     "both axles in a cell": (
         "Achslasten (v/h);820/630;kg\nFederrate VA / HA;25,0 / 28,5;N/mm\nTrack rear/front;1530 mm / 1540 mm\n",
         {"front_axle_load": 820.0, "wheel_rate_rear": 28.5e3, "track_front": 1.54, "track_rear": 1.53}),
@@ -92,8 +95,10 @@ NUMBERS: dict[str, tuple[str, dict[str, float | None]]] = {
                                   {"wheel_rate_front": 8 * 9806.65, "wheel_rate_rear": 6 * 9806.65, "kerb_mass": 1450.0,
                                    "wheelbase": 2.6}),
     "limits": ("name,value,unit,comment\nKerb weight,1400,kg,\nzulässiges Gesamtgewicht,1900,kg,\n"
-               "Front axle load (max),1000,kg,\nRear axle load,950,kg,permissible\n",
-               {"kerb_mass": 1400.0, "front_axle_load": None, "rear_axle_load": None}),
+               "Front axle load (max),1000,kg,\nRear axle load,950,kg,permissible\n"
+               "Front roll stiffness (springs only),500,Nm/deg\n",
+               {"kerb_mass": 1400.0, "front_axle_load": None, "rear_axle_load": None,
+                "roll_stiffness_front": None}),
     "German compounds": (
         "Fahrzeuggesamtmasse leer;1450;kg\nVorderachslast;820;kg\nAufbaufedersteifigkeit vorne (radbezogen);24,5;N/mm\n"
         "Stoßdämpferkonstante vorn;1,8;kNs/m\nReifenvertikalsteifigkeit;205;N/mm\nSchwerpunkthöhe über Boden;545;mm\n"
@@ -177,7 +182,8 @@ def test_three_coordinates_in_a_cell(form, tmp_path):
 
 
 def test_rods_of_an_axle_of_five_links(tmp_path):
-    rods = {"upper trailing link wheel side": "trailing_upper_outer", "lower trailing link body": "trailing_lower_inner",
+    rods = {"upper trailing link wheel side": "trailing_upper_outer",
+            "lower trailing link body": "trailing_lower_inner",
             "upper lateral link inner": "upper_inner", "upper lateral link outer": "upper_outer",
             "toe link outer": "lower_front_outer", "lower front link inner": "lower_front_inner",
             "lower rear outer": "lower_rear_outer"}  # fmt: skip

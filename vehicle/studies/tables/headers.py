@@ -1,7 +1,6 @@
 """Header of a block of a table: kind and unit of each column."""
 
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from vehicle.studies.tables.cell_units import name_and_unit
@@ -39,7 +38,7 @@ class Heads:
     @property
     def triples(self) -> list[str]:
         """Return the letters of the columns k, c, d, s that have x, y and z: stiffness or damping, by their units."""
-        return triples(self.columns)
+        return [letter for letter in "kcds" if {f"{letter}{axis}" for axis in "xyz"} <= set(self.columns)]
 
     @property
     def limits(self) -> list[int]:
@@ -50,11 +49,6 @@ class Heads:
     def is_curve(self) -> bool:
         """Return True for the velocities and forces of a damper."""
         return {"velocity", "force"} <= set(self.columns)
-
-
-def triples(columns: Mapping[str, int]) -> list[str]:
-    """Return the letters k, c, d, s whose columns x, y and z exist."""
-    return [letter for letter in "kcds" if {f"{letter}{axis}" for axis in "xyz"} <= set(columns)]
 
 
 def axle_of(plain: list[str]) -> tuple[str, str] | None:

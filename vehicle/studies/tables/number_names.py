@@ -49,7 +49,7 @@ def _quantity(
 
 
 QUALIFIERS = frozenset({"max", "maximum", "min", "minimum", "permissible", "permitted", "zul", "zulässig", "zulässige",
-                        "laden", "gross", "limit", "tyre"})  # fmt: skip
+                        "laden", "gross", "limit", "tyre", "only", "without", "excluding", "excl", "ohne"})  # fmt: skip
 """Words that make another number of it, also in parentheses: an axle load (max), a wheel rate (incl. tyre)."""
 
 PER_WHEEL = ("wheel", "corner", "side", "each", "one", "quarter", "single")
@@ -77,10 +77,10 @@ QUANTITIES: dict[str, Quantity] = {
                            optional="vehicle kerb wheel corner total empty"),
     "front_share": _quantity("mass distribution|distribution|mass share|load distribution|share|mass fraction",
                              NONE, (0.2, 0.8), of_axle=None, optional="kerb total vehicle"),
-    "wheelbase": _quantity("wheelbase", LENGTH, (1.0, 8.0), optional="vehicle length"),
+    "wheelbase": _quantity("wheelbase", LENGTH, (1.0, 4.2), optional="vehicle length"),
     "track": _quantity("track", LENGTH, (0.8, 3.0), of_axle=None, optional="wheel"),
     "half_track": _quantity("halftrack", LENGTH, (0.4, 1.5), of_axle=None),
-    "cog_height": _quantity("cog height|cog z|height mass cog|cog above", LENGTH, (0.2, 1.5),
+    "cog_height": _quantity("cog height|cog z|height mass cog|cog above", LENGTH, (0.2, 1.2),
                             optional="vehicle above mass total"),
     "cog_x": _quantity("cog|cog distance|cog x|cog longitudinal", LENGTH, (0.2, 5.0), of_axle=None,
                        optional="distance behind longitudinal x wheel mass between vehicle"),
@@ -161,7 +161,7 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
         key, axle = SYMBOLS[symbol]
         return key, "" if QUANTITIES[key].of_axle is False else axle or name.axle, True
     terms = set(name.terms)
-    if {"tyre", "rate"} <= terms and terms & {"incl", "including", "inkl", "einschließlich"}:
+    if {"tyre", "rate"} <= terms and "roll" not in terms and terms & {"incl", "including", "inkl", "einschließlich"}:
         return "ride_rate", name.axle, False
     if "suspension" in name.text.lower() and "suspension" not in terms:
         # "Front suspension stiffness" is the suspension stiffness of the front axle.

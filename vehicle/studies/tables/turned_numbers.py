@@ -14,7 +14,7 @@ from vehicle.errors import DataError
 from vehicle.studies.tables.cell_units import name_and_unit
 from vehicle.studies.tables.cells import NUMBER, WITH_UNIT, Row
 from vehicle.studies.tables.headers import KINDS, VELOCITY, axle_of
-from vehicle.studies.tables.name_words import AXLES, name_words, words_of
+from vehicle.studies.tables.name_words import AXLES, SIDES, name_words, words_of
 from vehicle.studies.tables.number_names import number_of
 from vehicle.studies.tables.unit_factor import unit_factor
 
@@ -89,9 +89,16 @@ def _inertia(head: Row, block: Sequence[Row]) -> list[Row]:
 
 
 def _paired(head: Row, below: Sequence[Row]) -> list[Row]:
-    """Return the rows below two headers, the axles above pairs of value and unit."""
+    """Return the rows below two headers, the axles above pairs of value and unit, or above left and right."""
     if not below:
         return []
+    if len(sides := [words_of(cell) for cell in below[0].cells if cell]) > 2 and all(
+        len(plain) == 1 and plain[0] in SIDES for plain in sides
+    ):
+        # The axles above left and right, each in the first of its columns.
+        titles = list(itertools.accumulate(head.cells[1:], lambda last, cell: cell or last))
+        joined = [f"{title} {side}".strip() for title, side in zip(titles, below[0].cells[1:], strict=False)]
+        return [_row(head, head.cells[0] or "name", *joined), *below[1:]]
     sorts = [KINDS.get(cell.lower(), "") for cell in below[0].cells]
     pairs = [index for index in range(len(sorts) - 1) if sorts[index : index + 2] == ["value", "unit"]]
     titles = [head.cells[index] if index < len(head.cells) else "" for index in pairs]
