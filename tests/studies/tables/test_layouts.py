@@ -63,6 +63,8 @@ NUMBERS: dict[str, tuple[str, dict[str, float | None]]] = {
     "a row for the car, units below the header": (
         "Parameter,mass,wheelbase,track front\nUnit,kg,mm,mm\nValue,1400,2600,1500\n",
         {"kerb_mass": 1400.0, "wheelbase": 2.6, "track_front": 1.5}),
+    "a row of the laden car first": ("Load case,Mass [kg],CG height [mm]\nLaden,1800,560\nEmpty,1400,540\n",
+                                     {"kerb_mass": 1400.0, "cog_height": 0.54}),
     "pairs of value and unit": (
         "Parameter,Front,,Rear,\n,Value,Unit,Value,Unit\nTrack,1540,mm,1.53,m\nWheel rate,25,N/mm,28,kN/m\n",
         {"track_front": 1.54, "track_rear": 1.53, "wheel_rate_front": 25e3, "wheel_rate_rear": 28e3}),

@@ -288,9 +288,9 @@ def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
             table.guess(*why, f"{key_words(*why)}: at the wheel (motion ratio 1); neither a motion ratio nor "
                         "the points of spring and arm are stated")  # fmt: skip
     elif spring is not None:
-        own = "" if ratio is None else f", {ratio**2 * spring:.0f} N/m at the wheel by its motion ratio"
-        table.result.left_out.append(("", f"{key_words('spring_rate', axle)} {spring:g} N/m{own}: the wheel rate of "
-                                      f"{wheel or 0.0:.0f} N/m counts"))  # fmt: skip
+        by_ratio = "" if ratio is None else f", {ratio**2 * spring:.0f} N/m at the wheel by its motion ratio"
+        text = f"{key_words('spring_rate', axle)} {spring:g} N/m{by_ratio}"
+        table.result.left_out.append(("", f"{text}: the wheel rate of {wheel or 0.0:.0f} N/m counts"))
     if wheel is not None:
         table.put(f"wheel_rate_{axle}", wheel, why, (why[0], ""), *((("motion_ratio", axle),) if ratio else ()))
     if (frequency := table.get("ride_frequency", axle)) is not None:

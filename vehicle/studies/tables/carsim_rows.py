@@ -43,8 +43,8 @@ def carsim_rows(path: Path) -> tuple[list[Row], list[str]]:
             if listed is None or not listed[2]:
                 others.append(match[1])
                 continue
-            place = f"({axle},{side})" if axle and side else f"({axle})" if axle else ""
+            indices = f"({axle},{side})" if axle and side else f"({axle})" if axle else ""
             note = "axle" if listed[0] == "unsprung_mass" else ""
-            cells = (f"{match[1]}{place}", match[4], (match[5] or "").strip(), note)
+            cells = (f"{match[1]}{indices}", match[4], (match[5] or "").strip(), note)
             rows.append(Row(where=f"{path}:{number}", sheet="", cells=cells, is_loose=True))
     return rows, others

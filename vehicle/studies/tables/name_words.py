@@ -142,9 +142,9 @@ def _parts(word: str) -> list[str] | None:
         return []
     for stem in STEMS:
         if len(stem) > 2 and word.startswith(stem):
-            rest = word[len(stem) :]
+            tail = word[len(stem) :]
             for end in ("", "s", "n", "e", "en"):
-                if rest.startswith(end) and (parts := _parts(rest[len(end) :])) is not None:
+                if tail.startswith(end) and (parts := _parts(tail[len(end) :])) is not None:
                     return [stem, *parts]
     return None
 

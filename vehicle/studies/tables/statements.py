@@ -271,7 +271,7 @@ class _Reader:
             # A column of units before the values.
             dimension = QUANTITIES[listed[0]].dimension
             of_cells = ((cell, unit_factor(cell, dimension)) for cell in row.cells[at + 1 : index])
-            unit = next((cell for cell, found in of_cells if found and found.dimension == dimension), "")
+            unit = next((cell for cell, factor in of_cells if factor and factor.dimension == dimension), "")
         if more := [row.cells[other] for other, _ in after[1:]]:
             self.content.left_out.append((row.where, f"{text!r}: the further values {', '.join(more)[:60]}; the first "
                                           "one counts"))  # fmt: skip

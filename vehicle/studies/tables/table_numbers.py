@@ -169,7 +169,7 @@ def _si(row: Number, key: str, remarks: Sequence[str], result: CarNumbers) -> fl
             raise DataError(f"{row.where}: {row.name.text!r} has the unit {row.unit!r}, but {key_words(key, '')} needs "
                             f"one such as {' or '.join(GUESSED[quantity.dimension])}; correct one of both")  # fmt: skip
         return row.value * unit.factor
-    if key == "front_share" and row.value > 1.0:
+    if key in ("front_share", "roll_share") and row.value > 1.0:
         return 0.01 * row.value
     low, high = quantity.sizes
     fitting = [(text, unit.factor) for text in GUESSED[quantity.dimension]
@@ -208,7 +208,7 @@ def _by_the_sum(content: Statements) -> bool | None:
 
 
 def _by_the_sizes(content: Statements) -> bool | None:
-    """Return whether unsprung masses of unclear size are of a wheel, as another one of the file clearly is."""
+    """Return True if the size of another mass shows that unsprung masses are of a wheel; None: unknown."""
     sizes = []
     for row in content.numbers:
         listed, unit = number_of(row.name), unit_factor(row.unit or "kg", MASS)

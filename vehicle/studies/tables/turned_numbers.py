@@ -15,7 +15,7 @@ from vehicle.studies.tables.cell_units import name_and_unit
 from vehicle.studies.tables.cells import NUMBER, WITH_UNIT, Row
 from vehicle.studies.tables.headers import KINDS, VELOCITY, axle_of
 from vehicle.studies.tables.name_words import AXLES, SIDES, name_words, words_of
-from vehicle.studies.tables.number_names import number_of
+from vehicle.studies.tables.number_names import QUALIFIERS, number_of
 from vehicle.studies.tables.unit_factor import unit_factor
 
 TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
@@ -117,11 +117,11 @@ def _quantities(head: Row, below: Sequence[Row]) -> list[Row]:
     if not below or any(map(_is_number, head.cells)):
         return []
     names = [name_and_unit(cell) for cell in head.cells]
-    words = [name_words(text, right_letter="") for text, _ in names]
-    if sum(bool(name.terms) and number_of(name) is not None for name in words) < 2:
+    plain_names = [name_words(text, right_letter="") for text, _ in names]
+    if sum(bool(name.terms) and number_of(name) is not None for name in plain_names) < 2:
         # An axle load has no axle in its name here.
-        words = [name_words(f"front {text}", right_letter="") for text, _ in names]
-        if sum(len(name.terms) > 0 and number_of(name) is not None for name in words) < 2:
+        plain_names = [name_words(f"front {text}", right_letter="") for text, _ in names]
+        if sum(len(name.terms) > 0 and number_of(name) is not None for name in plain_names) < 2:
             return []
     units = [unit for _, unit in names]
     if not any(map(_is_number, below[0].cells)):
@@ -137,7 +137,7 @@ def _quantities(head: Row, below: Sequence[Row]) -> list[Row]:
     result, used = [_row(head, "name", "value", "unit")], False
     for row, label in zip(below, labels, strict=True):
         of_axle = axle_of(words_of(label)) is not None if label else False
-        if used and not of_axle:
+        if (used and not of_axle) or QUALIFIERS & set(words_of(label)):
             result.append(row)
             continue
         used = used or not of_axle
@@ -156,23 +156,24 @@ def _damper(head: Row, below: Sequence[Row]) -> list[Row]:
             *(row.cells for row in (head, *below) if row.cells[0]), fillvalue="")]  # fmt: skip
         head, below = turned[0], turned[1:]
     names = [name_and_unit(cell) for cell in head.cells]
-    words = [words_of(text) for text, _ in names]
-    velocity = next((index for index, plain in enumerate(words) if plain and plain[0] in VELOCITY), -1)
-    others = [index for index, plain in enumerate(words) if plain and index != velocity]
-    if velocity < 0 or not others or (len(others) < 2 and not STROKES & set(words[others[0]])) or not below:
+    plain_names = [words_of(text) for text, _ in names]
+    velocity = next((index for index, plain in enumerate(plain_names) if plain and plain[0] in VELOCITY), -1)
+    others = [index for index, plain in enumerate(plain_names) if plain and index != velocity]
+    if velocity < 0 or not others or (len(others) < 2 and not STROKES & set(plain_names[others[0]])) or not below:
         return []
     result: list[Row] = []
     for axle in ("", *AXLES):
-        columns = [index for index in others if _axle_of_force(words[index]) == axle]
+        columns = [index for index in others if _axle_of_force(plain_names[index]) == axle]
         if not columns:
             continue
-        strokes = [{*words[index]} & STROKES for index in columns]
+        strokes = [{*plain_names[index]} & STROKES for index in columns]
         if len(columns) > 1 and (len(columns) > 2 or strokes[0] == strokes[1]):
             raise DataError(f"{head.where}: several columns of force of one damper; name their axle, or rebound and "
                             "compression, and remove the others")  # fmt: skip
         curve, unit = [], next((names[index][1] for index in columns if names[index][1]), "")
         for index in columns:
-            sign = next((sign for word, sign in (("rebound", ""), ("compression", "-")) if word in words[index]), None)
+            signs = {"rebound": "", "compression": "-"}
+            sign = next((signs[word] for word in plain_names[index] if word in signs), None)
             for row in below:
                 if max(velocity, index) < len(row.cells) and row.cells[index]:
                     pair = (row.cells[velocity], row.cells[index])
@@ -229,8 +230,8 @@ def _both_axles(row: Row, guessed: list[tuple[str, str]]) -> list[Row]:
     rows = []
     for axle, part in zip(axles, parts, strict=True):
         assert part is not None  # fmt: skip
-        own = part["unit"] or unit
-        ends = (own,) if own and unit_factor(own) is not None else following
+        of_part = part["unit"] or unit
+        ends = (of_part,) if of_part and unit_factor(of_part) is not None else following
         cells = (f"{axle} {plain}", part["value"], *ends)
         rows.append(Row(where=row.where, sheet=row.sheet, cells=cells, is_loose=True))
     return rows
