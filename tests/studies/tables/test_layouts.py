@@ -204,6 +204,21 @@ def test_german_words_of_axes_and_origin(tmp_path):
     assert table.points["rear"]["damper_upper"] == pytest.approx((0.03, 0.57, 0.56), abs=1e-9)
 
 
+BUSHINGS = {
+    "words": "Bushing,Axle,Translational stiffness x [N/mm],stiffness y,stiffness z,Preload [N]\n"
+             "LCA rear,front,800,900,500,7\n",
+    "unit in a column": "Lager;Kx;Ky;Kz;Einheit\nvorn Querlenker hinten;800;900;500;N/mm\n",
+    "unit in the title": "Bushing stiffness (N/mm),x,y,z\nfront lower arm rear,800,900,500\n",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BUSHINGS)
+def test_bushings_of_a_layout(case, tmp_path):
+    table = read(tmp_path, BUSHINGS[case], name="car.csv")
+    assert table.parameters["front", "bushings.arm_rear.stiffness"][0] == [8e5, 9e5, 5e5]
+    assert ("Preload" in BUSHINGS[case]) == any("Preload" in text for _, text in table.left_out)
+
+
 SHARES = ("distribution,55/45,%", "distribution F:R,55:45", "distribution,55 % front", "distribution,45 % rear",
           "distribution,55% front / 45% rear", "distribution rear/front,45/55,%")  # fmt: skip
 

@@ -21,7 +21,8 @@ COLUMNS = {
 
 KINDS = {word: sort for sort, terms in COLUMNS.items() for word in terms.split()}
 _COORDINATE = re.compile(r"(?:loc|pos|coord|coordinate)?[ _]*([xyz])(?:[ _]*(?:value|coordinate|coord|pos|loc))?", re.I)
-_BUSHING = re.compile(r"(k|c|d|stiffness|damping)[ _]*([xyz])", re.IGNORECASE)
+_BUSHING = re.compile(r"(?:translational |linear )?(k|c|d|stiffness|damping|steifigkeit|dämpfung)(?: in)?[ _-]*([xyz])",
+                      re.IGNORECASE)  # fmt: skip
 VELOCITY, FORCE = ("velocity", "speed", "geschwindigkeit", "v"), ("force", "kraft", "f")
 
 
@@ -95,6 +96,13 @@ def read_heads(row: Row) -> Heads | None:
             units[sort] = unit
         elif unit and index in axles:
             units[f"axle{index}"] = unit
+    title = next((cell for index, cell in enumerate(row.cells) if cell and index not in columns.values()), "")
+    kind = next((letter for word, letter in (("rate", "k"), ("damping", "c")) if word in words_of(title)), "")
+    if kind and {"x", "y", "z"} <= set(columns):
+        # "Bushing stiffness (N/mm),x,y,z" heads no coordinates.
+        for axis in "xyz":
+            columns[f"{kind}{axis}"] = columns.pop(axis)
+            units[f"{kind}{axis}"] = units.pop(axis) or name_and_unit(title)[1]
     heads = Heads(columns=columns, units=units, axles=axles, width=len(row.cells), names=names)
     points = {"x", "y", "z"} <= set(columns)
     has_value = "value" in columns and sum(map(bool, row.cells)) > 1

@@ -162,7 +162,7 @@ class _Reader:
             for letter in triples:
                 at = [values[self.heads.columns[f"{letter}{axis}"]] for axis in "xyz"]
                 if None not in at and text:
-                    unit, name = self.heads.units[f"{letter}x"], self._name(row, text)
+                    unit, name = self.heads.units[f"{letter}x"] or self._cell(row, "unit"), self._name(row, text)
                     self.content.bushings.append(Point(where=row.where, name=name, at=tuple(at), unit=unit))  # type: ignore[arg-type]
             return True
         if self.heads is not None and "x" in self.heads.columns:
@@ -188,6 +188,10 @@ class _Reader:
             self._title(title)
         self.unit = unit or self.unit
         self.heads = heads
+        known = {*heads.columns.values(), *heads.names, *heads.axles}
+        others = [cell for index, cell in enumerate(row.cells) if cell and index not in known]
+        if others and (heads.triples or heads.is_curve or "x" in heads.columns):
+            self.content.left_out.append((row.where, f"columns {', '.join(others)}: not read"))
         for index in heads.limits:
             self.content.left_out.append((row.where, f"column {row.cells[index]!r}: not of the empty car"))
         return True
