@@ -50,13 +50,13 @@ def _parameter_lines(source: CarTable) -> Iterable[str]:
     parts = {name: words for words, names in PARTS.items() for name in names}
     bushings = {name: key for key, names in BUSHINGS.items() for name in names}
     for (word, path), (value, _) in source.parameters.items():
-        kind, name, *_ = path.split(".")
-        if kind == "bushings":
+        section, name, *_ = path.split(".")
+        if section == "bushings":
             letter, unit = ("k", "N/m") if path.endswith("stiffness") else ("c", "N s/m")
             yield from ("", f"bushing,axle,{','.join(f'{letter}{axis} [{unit}]' for axis in 'xyz')}")
             yield f"{bushings[name]},{word},{','.join(f'{part:.9g}' for part in value)}"
         else:
-            text, unit = (f"{parts[name]} mass", "kg") if kind == "parts" else ("tyre damping", "N s/m")
+            text, unit = (f"{parts[name]} mass", "kg") if section == "parts" else ("tyre damping", "N s/m")
             yield from ("", "name,axle,value,unit", f"{text},{word},{value:.9g},{unit}")
 
 

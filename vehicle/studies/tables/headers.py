@@ -97,12 +97,12 @@ def read_heads(row: Row) -> Heads | None:
         elif unit and index in axles:
             units[f"axle{index}"] = unit
     title = next((cell for index, cell in enumerate(row.cells) if cell and index not in columns.values()), "")
-    kind = next((letter for word, letter in (("rate", "k"), ("damping", "c")) if word in words_of(title)), "")
-    if kind and {"x", "y", "z"} <= set(columns):
+    quantity = next((letter for word, letter in (("rate", "k"), ("damping", "c")) if word in words_of(title)), "")
+    if quantity and {"x", "y", "z"} <= set(columns):
         # "Bushing stiffness (N/mm),x,y,z" heads no coordinates.
         for axis in "xyz":
-            columns[f"{kind}{axis}"] = columns.pop(axis)
-            units[f"{kind}{axis}"] = units.pop(axis) or name_and_unit(title)[1]
+            columns[f"{quantity}{axis}"] = columns.pop(axis)
+            units[f"{quantity}{axis}"] = units.pop(axis) or name_and_unit(title)[1]
     heads = Heads(columns=columns, units=units, axles=axles, width=len(row.cells), names=names)
     points = {"x", "y", "z"} <= set(columns)
     has_value = "value" in columns and sum(map(bool, row.cells)) > 1
@@ -110,7 +110,7 @@ def read_heads(row: Row) -> Heads | None:
     if not (points or heads.triples or heads.is_curve or has_value or has_limits or len(axles) > 1):
         return None
     if "name" not in columns:
-        taken = {*columns.values(), *(() if points else axles)}
-        free = [index for index in range(len(row.cells)) if index not in taken]
+        in_use = {*columns.values(), *(() if points else axles)}
+        free = [index for index in range(len(row.cells)) if index not in in_use]
         columns["name"] = free[0] if free else 0
     return heads

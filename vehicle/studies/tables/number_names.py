@@ -171,8 +171,8 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
     first, _, last = name.text.rpartition(" ")
     if len(name.terms) > 1 and (symbol := "".join(letter for letter in last.lower() if letter.isalnum())) in SYMBOLS:
         # "Sprung mass m_s": words and symbol of one number.
-        rest = name_words(first, right_letter="")
-        listed = number_of(replace(rest, axle=rest.axle or name.axle)) if rest.terms else None
+        words_before = name_words(first, right_letter="")
+        listed = number_of(replace(words_before, axle=words_before.axle or name.axle)) if words_before.terms else None
         if listed is not None and listed[0] == SYMBOLS[symbol][0]:
             return listed
     for key, quantity in QUANTITIES.items():

@@ -188,8 +188,8 @@ class _Reader:
             self._title(title)
         self.unit = unit or self.unit
         self.heads = heads
-        known = {*heads.columns.values(), *heads.names, *heads.axles}
-        others = [cell for index, cell in enumerate(row.cells) if cell and index not in known]
+        in_use = {*heads.columns.values(), *heads.names, *heads.axles}
+        others = [cell for index, cell in enumerate(row.cells) if cell and index not in in_use]
         if others and (heads.triples or heads.is_curve or "x" in heads.columns):
             self.content.left_out.append((row.where, f"columns {', '.join(others)}: not read"))
         for index in heads.limits:
