@@ -70,7 +70,7 @@ def _statements(path: Path, links: dict[str, _Link]) -> Statements:
               and not any(other.parent == name and "wheel" in other.name.lower()
                           for other in links.values())]  # fmt: skip
     # A steering wheel is at no corner of the car.
-    at_corners = [name for name in wheels if (terms := name_words(name, right_letter="")).axle and terms.side]
+    at_corners = [name for name in wheels if (parsed := name_words(name, right_letter="")).axle and parsed.side]
     wheels = at_corners if len(at_corners) == 4 else wheels
     if len(wheels) != 4:
         raise DataError(

@@ -96,7 +96,9 @@ def _paired(head: Row, below: Sequence[Row]) -> list[Row]:
         len(plain) == 1 and plain[0] in SIDES for plain in sides
     ):
         # The axles above left and right, each in the first of its columns.
-        titles = list(itertools.accumulate(head.cells[1:], lambda last, cell: cell or last))
+        titles: list[str] = []
+        for cell in head.cells[1:]:
+            titles.append(cell or (titles[-1] if titles else ""))
         joined = [f"{title} {side}".strip() for title, side in zip(titles, below[0].cells[1:], strict=False)]
         return [_row(head, head.cells[0] or "name", *joined), *below[1:]]
     sorts = [KINDS.get(cell.lower(), "") for cell in below[0].cells]
