@@ -188,7 +188,7 @@ def test_rods_of_an_axle_of_five_links(tmp_path):
             "lower trailing link body": "trailing_lower_inner",
             "upper lateral link inner": "upper_inner", "upper lateral link outer": "upper_outer",
             "toe link outer": "lower_front_outer", "lower front link inner": "lower_front_inner",
-            "lower rear outer": "lower_rear_outer"}  # fmt: skip
+            "spring link outer": "lower_rear_outer"}  # fmt: skip
     lines = [f"{name},{2.6 + 0.01 * n},{0.7 - 0.02 * n},{0.3 + 0.03 * n}" for n, name in enumerate(rods)]
     text = "axes: adams\nRear axle,x [m],y [m],z [m]\nwheel centre,2.6,0.75,0.3\n" + "\n".join(lines) + "\n"
     (tmp_path / "car.csv").write_text(text)

@@ -52,6 +52,9 @@ QUALIFIERS = frozenset({"max", "maximum", "min", "minimum", "permissible", "perm
                         "laden", "gross", "limit", "tyre", "only", "without", "excluding", "excl", "ohne"})  # fmt: skip
 """Words that make another number of it, also in parentheses: an axle load (max), a wheel rate (incl. tyre)."""
 
+STROKES = ("compression", "rebound")
+"""Words of the damping of one stroke."""
+
 PER_WHEEL = ("wheel", "corner", "side", "each", "one", "quarter", "single")
 """Words of a number of one wheel instead of an axle."""
 

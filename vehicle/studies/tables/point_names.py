@@ -59,10 +59,12 @@ def is_template_name(text: str) -> bool:
 def _rod_of(name: NameWords, *, lower: bool, upper: bool, along: str) -> str | None:
     """Return the end of a rod of an axle of five links: "upper trailing link outer", "lower rear link body"."""
     terms = set(name.terms)
-    if "link" not in terms or "spring" in terms or "damper" in terms or lower == upper:
+    if "link" not in terms or "damper" in terms:
         return None
+    # The spring link is a lower one.
+    lower = lower or ("spring" in terms and not upper)
     end = "inner" if terms & (OF_BODY | {"inner"}) else "outer" if terms & ON_WHEEL else ""
-    if not end:
+    if not end or lower == upper:
         return None
     if "trailing" in terms:
         return f"trailing_{'lower' if lower else 'upper'}_{end}"

@@ -9,7 +9,7 @@ from typing import Any
 from vehicle.digits import number as shown
 from vehicle.errors import DataError
 from vehicle.studies.tables.name_words import words_of
-from vehicle.studies.tables.number_names import DAMPING, GUESSED, PER_WHEEL, QUANTITIES, RATE, SI, number_of
+from vehicle.studies.tables.number_names import DAMPING, GUESSED, PER_WHEEL, QUANTITIES, RATE, SI, STROKES, number_of
 from vehicle.studies.tables.statements import Number, Statements
 from vehicle.studies.tables.unit_factor import FORCE, MASS, NONE, unit_factor
 
@@ -35,7 +35,6 @@ _OF_THE_WHEEL = re.compile(r"\b(wheel|rad)(weg)?( travel| displacement| movement
                            r"(spring|damper|shock|feder|dämpfer)")  # fmt: skip
 """Words of a motion ratio of wheel travel per spring travel, the inverse of ours."""
 
-STROKES = ("compression", "rebound")
 LIMITS = {"max", "maximum", "permissible", "permitted", "zul", "zulässig"}
 """Words of a remark on a limit of a number, which is not the number."""
 

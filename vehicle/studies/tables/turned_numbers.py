@@ -15,7 +15,7 @@ from vehicle.studies.tables.cell_units import name_and_unit
 from vehicle.studies.tables.cells import NUMBER, WITH_UNIT, Row
 from vehicle.studies.tables.headers import KINDS, VELOCITY, axle_of
 from vehicle.studies.tables.name_words import AXLES, SIDES, name_words, words_of
-from vehicle.studies.tables.number_names import QUALIFIERS, number_of
+from vehicle.studies.tables.number_names import QUALIFIERS, STROKES, number_of
 from vehicle.studies.tables.unit_factor import unit_factor
 
 TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
@@ -23,7 +23,6 @@ _BOTH = re.compile(r"[(\[ ,]*\b(f|v|va|fr|front|vorn|vorne|r|h|ha|rear|hinten)\b
                    r"\b(f|v|va|front|vorn|vorne|r|rr|h|ha|rear|hinten)\b[)\] ]*", re.IGNORECASE)  # fmt: skip
 """Words of both axles in one name: "Track (F/R)"."""
 _PART = re.compile(r"(?P<value>[+-]?[\d.,]+)\s*(?P<unit>%|[a-zA-Z][^\s/:]*(?:/[a-zA-Z]+)?)?\s*(?P<axle>[a-zA-Z]+)?\.?")
-STROKES = {"rebound", "compression"}
 _FRONT = frozenset({"f", "v", "va", "fr", "front", "vorn", "vorne"})
 
 
@@ -161,14 +160,14 @@ def _damper(head: Row, below: Sequence[Row]) -> list[Row]:
     plain_names = [words_of(text) for text, _ in names]
     velocity = next((index for index, plain in enumerate(plain_names) if plain and plain[0] in VELOCITY), -1)
     others = [index for index, plain in enumerate(plain_names) if plain and index != velocity]
-    if velocity < 0 or not others or (len(others) < 2 and not STROKES & set(plain_names[others[0]])) or not below:
+    if velocity < 0 or not others or (len(others) < 2 and not {*STROKES} & set(plain_names[others[0]])) or not below:
         return []
     result: list[Row] = []
     for axle in ("", *AXLES):
         columns = [index for index in others if _axle_of_force(plain_names[index]) == axle]
         if not columns:
             continue
-        strokes = [{*plain_names[index]} & STROKES for index in columns]
+        strokes = [{*plain_names[index]} & {*STROKES} for index in columns]
         if len(columns) > 1 and (len(columns) > 2 or strokes[0] == strokes[1]):
             raise DataError(f"{head.where}: several columns of force of one damper; name their axle, or rebound and "
                             "compression, and remove the others")  # fmt: skip
