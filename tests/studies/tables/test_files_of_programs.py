@@ -167,6 +167,9 @@ def test_what_replaces_the_vertical_stiffness_of_a_tyre_file_is_named(tmp_path):
     assert "DEFLECTION_LOAD_CURVE" in table.origins.get("tyre_stiffness_front", "")
     left_out = " ".join(text for _, text in table.left_out)
     assert "VERTICAL_STIFFNESS" in left_out and "PPX1" in left_out
+    scaled = read(written(tmp_path, "b.tir", TIR_52.replace("LFZO  ", "LCZ = 0.5\nLFZO  ")))
+    assert scaled.numbers["tyre_stiffness_front"] == pytest.approx(1.05e5, rel=1e-12)
+    assert "LCZ 0.5" in scaled.origins["tyre_stiffness_front"]
 
 
 def test_a_steering_wheel_is_no_wheel_of_the_car(tmp_path):

@@ -44,7 +44,7 @@ OF_THE_FILE = ("VERTICAL", "STRUCTURAL", "DIMENSION", "INERTIA", "VERTICAL_FORCE
 """Blocks without coefficients of slip."""
 
 BLOCKS = ("COEFFICIENTS", "VERTICAL", "STRUCTURAL", "OVERTURNING", "ROLLING", "ALIGNING", "LATERAL", "LONGITUDINAL",
-          "TURNSLIP", "CONTACT_PATCH", "DEFLECTION", "BOTTOMING", "DIMENSION")  # fmt: skip
+          "TURNSLIP", "CONTACT_PATCH", "DEFLECTION", "BOTTOMING", "DIMENSION", "INERTIA")  # fmt: skip
 """Parts of the names of blocks with coefficients of the model."""
 
 
@@ -57,7 +57,7 @@ class TyreFile:
         model: name of the model.
         coefficients: numbers by name in upper case.
         unused: names of unused coefficients that are not zero, by block.
-        stiffness_origin: name of the vertical stiffness, or of the curve whose slope replaces it.
+        has_curve: True if the slope of a load curve replaces VERTICAL_STIFFNESS.
     """
 
     file: str
@@ -65,7 +65,7 @@ class TyreFile:
     fit: str
     coefficients: dict[str, float]
     unused: dict[str, list[str]] = field(default_factory=dict)
-    stiffness_origin: str = "VERTICAL_STIFFNESS"
+    has_curve: bool = False
 
     def __getitem__(self, name: str) -> float:
         """Return a coefficient; missing: 1 for a scaling factor, 2 for PKY4, else 0."""
@@ -83,6 +83,13 @@ class TyreFile:
         if self.fit not in NEWER or not self["NOMPRES"] or "INFLPRES" not in self.coefficients:
             return 0.0
         return self["INFLPRES"] / self["NOMPRES"] - 1.0
+
+    @property
+    def stiffness_origin(self) -> str:
+        """Return the names behind the vertical stiffness."""
+        name = "slope of DEFLECTION_LOAD_CURVE at FNOMIN" if self.has_curve else "VERTICAL_STIFFNESS"
+        scaled = f" x LCZ {self['LCZ']:g}" if self["LCZ"] != 1.0 else ""
+        return name + scaled + (" at INFLPRES" if self["PFZ1"] * self.pressure else "")
 
     @property
     def vertical_stiffness(self) -> float:
@@ -150,9 +157,9 @@ def read_tyre_file(path: Path) -> TyreFile:
         )
     coefficients, unused = _coefficients(content, fit)
     has_curve = bool((curve := content.blocks.get("DEFLECTION_LOAD_CURVE")) and curve.rows)
-    tyre = TyreFile(file=path.name, model=READ[fit], fit=fit, coefficients=coefficients, unused=unused,
-                    stiffness_origin="slope of DEFLECTION_LOAD_CURVE at FNOMIN" if has_curve else "VERTICAL_STIFFNESS",
-                    )  # fmt: skip
+    tyre = TyreFile(
+        file=path.name, model=READ[fit], fit=fit, coefficients=coefficients, unused=unused, has_curve=has_curve
+    )
     for key, low, high, unit in (("FNOMIN", 500.0, 1e5, "N"), ("UNLOADED_RADIUS", 0.15, 1.0, "m"),
                                  ("VERTICAL_STIFFNESS", 2e4, 5e6, "N/m")):  # fmt: skip
         if not low <= coefficients.get(key, math.nan) <= high:
