@@ -4,7 +4,7 @@
     MINOR_ROLE = 'front'            {hardpoint_name symmetry x_value y_value z_value}   USAGE = 'upright'
                                     'lca_front' 'left/right' -200.0 -400.0 150.0        MASS = 12.0
 
-The coordinates of a pair are those of its left point. Frame of Adams Car: x rearward, y right, z up.
+A pair (symmetry left/right) has the coordinates of its left point. Frame of Adams Car: x rearward, y right, z up.
 """
 
 import re

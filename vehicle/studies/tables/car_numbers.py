@@ -36,7 +36,7 @@ class _Numbers:
 
     @property
     def of_body(self) -> bool:
-        """Return True for a lumped model: the mass of the body is stated, that of the car is not."""
+        """Return True for a lumped model, whose sprung mass is stated without the mass of the car."""
         stated = ("kerb_mass", ""), ("axle_load", "front"), ("axle_load", "rear")
         return ("sprung_mass", "") in self.values and not any(key in self.values for key in stated)
 

@@ -123,7 +123,7 @@ class NameWords:
 
 
 def plain_words(piece: str) -> list[str]:
-    """Return the plain words of a word in small letters; those of its parts where it is made of several."""
+    """Return the plain words of a word in small letters, or of the parts of a compound."""
     if (adjective := ADJECTIVE.fullmatch(piece)) and piece not in PLAIN:
         piece = adjective[1]
     if piece in PLAIN:
