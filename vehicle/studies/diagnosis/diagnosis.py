@@ -24,9 +24,11 @@ from vehicle.signals.records.choice import Choice
 from vehicle.studies.diagnosis.car_diagnosis import GROUPS, CarDiagnosis
 from vehicle.studies.diagnosis.drawn_car import CarPrior
 from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts, read_drive, upright, usable_parts
+from vehicle.studies.diagnosis.driven_modes import ModeFit
 from vehicle.studies.diagnosis.features import Bands, related_pairs, rows_of_points
 from vehicle.studies.diagnosis.learned import Learned
-from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, Drives, simulated_drives
+from vehicle.studies.diagnosis.roughness import road_pieces
+from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, Drives, nominal_modes, simulated_drives
 
 DRIVES, MORE_DRIVES = 960, 1440
 """Simulated drives for a known speed, and for a range of speeds."""
@@ -60,6 +62,8 @@ class Diagnostics:
         drives: simulated drives.
         learned: regression of the unknowns over the features.
         at_wheels: the same regression with sensors at all wheels and strut tops; None for a car without these points.
+        modes: regression of the modes.
+        prior: cars at the middle speed.
     """
 
     car: str
@@ -69,6 +73,8 @@ class Diagnostics:
     drives: Drives
     learned: Learned = field(repr=False)
     at_wheels: Learned | None = field(repr=False)
+    modes: ModeFit = field(repr=False)
+    prior: CarPrior = field(repr=False)
 
     @classmethod
     def of(
@@ -121,6 +127,8 @@ class Diagnostics:
             drives=simulated,
             learned=Learned(simulated.features[0], simulated.values, TOGETHER),
             at_wheels=Learned(simulated.features[1], simulated.values, TOGETHER) if at_wheels else None,
+            modes=ModeFit(simulated.features[0], simulated.modes, simulated.of("level"), TOGETHER),
+            prior=priors[len(priors) // 2],
         )
 
     def features(self, record: DriveRecord, parts: Parts) -> Vector:
@@ -147,12 +155,16 @@ class Diagnostics:
                 "the car"
             )
         widened = float(np.exp(WIDENING * max(0.0, unlike - USUAL)))
+        unknowns = dict(zip(self.drives.names, self.learned.posteriors(features, widened), strict=True))
+        speed, level = unknowns["speed"].quantile(0.5), 10.0 ** unknowns["level"].quantile(0.5)
         return CarDiagnosis(
             record=record.name,
             car=self.car,
             channels=self.channels,
             parts=parts,
-            unknowns=dict(zip(self.drives.names, self.learned.posteriors(features, widened), strict=True)),
+            unknowns=unknowns,
+            modes=self.modes.modes(features, widened, nominal_modes(self.prior, speed, level)),
+            road_pieces=road_pieces(self.drives.pieces, unknowns["roughness"], record, parts, self.highest),
             wheels=in_order(name.removeprefix("damper ") for name in self.drives.names if name.startswith("damper ")),
             unlikely=float(np.mean(self.learned.unlike >= unlike)),
             widened=widened,
