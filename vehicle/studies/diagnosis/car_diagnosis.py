@@ -29,6 +29,9 @@ TELLS = 0.85
 INTERVAL = (0.05, 0.95)
 """Ends of the printed intervals: 90 % lie inside."""
 
+ENDS = ("median", "low", "high")
+"""Names of the median and of the ends of an interval in JSON."""
+
 LIKELIEST = 0.99
 """Largest printed probability: a thousand drives resolve no more."""
 
@@ -123,7 +126,7 @@ class CarDiagnosis:
         for wheel in sorted(below, key=self.worn, reverse=True):
             undecided = "" if self.worn(wheel) >= SURE else "undecided, "
             sentences.append(
-                f"{self._title(wheel)}: {undecided}{_percent(self.worn(wheel))} likely below {100.0 * WORN:.0f} % of "
+                f"{self._title(wheel)}: {undecided}{percent(self.worn(wheel))} likely below {100.0 * WORN:.0f} % of "
                 f"nominal ({_interval(self.damper(wheel))})."
             )
         if unclear:
@@ -143,7 +146,7 @@ class CarDiagnosis:
         certain = limits[missed <= 1.0 - TOGETHER]
         limit, share = (certain[-1], TOGETHER) if certain.size else (WORN, 1.0 - missed[0])
         verb = "is" if len(healthy) == 1 else "are"
-        return f"{who} {verb} above {100.0 * limit:.0f} % ({_percent(float(share))} likely)."
+        return f"{who} {verb} above {100.0 * limit:.0f} % ({percent(float(share))} likely)."
 
     def _title(self, wheel: str) -> str:
         """Return the damper of a wheel in words: "Rear left damper"."""
@@ -198,7 +201,12 @@ class CarDiagnosis:
                 "class": road.letter,
                 "probability": road.probability,
                 "density_m3": [road.low, road.high],
-                "iri_m_per_km": dict(zip(("median", "low", "high"), self.roughness, strict=True)),
+                "iri_m_per_km": dict(zip(ENDS, self.roughness, strict=True)),
+                "iri_every_100_m": [
+                    {"from_m": piece.start[0], "to_m": piece.end[0]}
+                    | dict(zip(ENDS, _quantiles(piece.index), strict=True))
+                    for piece in self.road_pieces
+                ],
             },
             "modes": [
                 {
@@ -233,7 +241,7 @@ class CarDiagnosis:
             "",
             *self._mode_table(),
             "",
-            f"road: class {road.letter} ({_percent(road.probability)} likely), G(0.1 cycles/m) "
+            f"road: class {road.letter} ({percent(road.probability)} likely), G(0.1 cycles/m) "
             f"{number(1e6 * road.low, 2)} to {number(1e6 * road.high, 2)} 1e-6 m3; {self._roughness_words()}",
             f"used: {number(parts.seconds)} s of {self.record} at {speed} in {len(parts.spans)} "
             f"part{'s' * (len(parts.spans) > 1)}{f' (left out: {left_out})' if left_out else ''}, "
@@ -256,12 +264,11 @@ class CarDiagnosis:
                     row["unknown"],
                     f"{row['median']:.2f}",
                     f"{row['low']:.2f} to {row['high']:.2f}",
-                    *(_percent(share) if damper else "" for share in shares),
+                    *(percent(share) if damper else "" for share in shares),
                     "" if row["told"] else "undetermined",
                 )
             )
         return aligned(cells)
-
 
     def _roughness_words(self) -> str:
         """Return the roughness index in words, with the range of its pieces."""
@@ -296,7 +303,8 @@ def told(posterior: Posterior) -> bool:
     return posterior.deviation <= TELLS * posterior.prior
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """Return a probability in percent, at most `LIKELIEST`."""
     return f"{100.0 * min(max(share, 1.0 - LIKELIEST), LIKELIEST):.0f} %"
 
 

@@ -22,8 +22,9 @@ from vehicle.names import in_order
 from vehicle.runs.car import Car
 from vehicle.signals.records.choice import Choice
 from vehicle.studies.diagnosis.car_diagnosis import GROUPS, CarDiagnosis
+from vehicle.studies.diagnosis.device_axes import oriented
 from vehicle.studies.diagnosis.drawn_car import CarPrior
-from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts, read_drive, upright, usable_parts
+from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts, read_drive, usable_parts
 from vehicle.studies.diagnosis.driven_modes import ModeFit
 from vehicle.studies.diagnosis.features import Bands, related_pairs, rows_of_points
 from vehicle.studies.diagnosis.learned import Learned
@@ -224,6 +225,7 @@ def diagnose_car(
     choice: Choice | None = None,
     inverted: Collection[str] = (),
     free: Sequence[str] = (),
+    forward: str = "",
     parts: Sequence[str] = ("dampers",),
     count: int | None = None,
     seed: int = 1,
@@ -233,13 +235,15 @@ def diagnose_car(
 
     Args:
         car: car that is not worn.
-        record: measurement file of any format, with accelerations at points of the car.
-        speed: speed [km/h], lower and upper speed, or "channel:NAME".
+        record: measurement file of any format, with accelerations at points of the car, or the name of a shipped one.
+        speed: speed [km/h], lower and upper speed, "channel:NAME", or "position:LATITUDE,LONGITUDE".
         channels: channel of the model to channel of the file; by default equal names.
         choice: units, times and excerpt of the file.
         inverted: channels measured in the opposite direction.
         free: points with a device in any direction, for example ("seat_rail",); x, y and z are axes of the device,
             and the record contains gravity.
+        forward: axis of these devices that points forward, for example "y" or "-z"; unknown by default, then it
+            follows from the changes of a recorded speed.
         parts: groups of unknowns for the table, of `GROUPS`.
         count: number of simulated drives; by default 960, and 1440 for a range of speeds.
         seed: seed of the simulated drives.
@@ -249,14 +253,13 @@ def diagnose_car(
         ConfigurationError: a wrong argument, or a car with controlled dampers.
         DataError: bad data, less than 16 s of steady drive, or a record that cannot be of this car.
     """
-    unknown = next((name for name in parts if name not in GROUPS), None)
-    if unknown is not None:
-        raise ConfigurationError(f"--parts {unknown}: must be one or more of {','.join(GROUPS)}")
+    wrong = next((name for name in parts if name not in GROUPS), None)
+    if wrong is not None:
+        raise ConfigurationError(f"--parts {wrong}: must be one or more of {','.join(GROUPS)}")
     asked = choice or Choice()
     asked = replace(asked, channels={**asked.channels, **(channels or {})})
     drive = _main_channels(car, read_drive(Path(record), car.vehicle.acceleration_channels, speed, asked, inverted))
-    for point in free:
-        drive = upright(drive, point)
+    drive, unknown = oriented(drive, free, forward)
     usable = usable_parts(drive)
     diagnostics = Diagnostics.of(
         car,
@@ -264,7 +267,7 @@ def diagnose_car(
         usable.speeds,
         usable.seconds,
         highest=min(drive.highest, 0.4 * RATE),
-        free=free,
+        free=unknown,
         count=count,
         seed=seed,
         progress=progress,

@@ -130,6 +130,8 @@ class ModeFit:
         posteriors = self.learned.posteriors(features, widened)
         count = len(self.motions)
         return tuple(
-            DrivenMode(motion=motion, frequency=posteriors[row], damping=posteriors[count + row], nominal=nominal[motion])
+            DrivenMode(
+                motion=motion, frequency=posteriors[row], damping=posteriors[count + row], nominal=nominal[motion]
+            )
             for row, motion in enumerate(self.motions)
         )
