@@ -1,4 +1,4 @@
-"""Write the shipped record of a drive with a worn damper: `python -m scenarios.inputs.make_third_car [--output DIR]`."""
+"""Write the shipped record of a worn damper: `python -m scenarios.inputs.make_third_car [--output DIR]`."""
 
 import argparse
 from pathlib import Path

@@ -23,6 +23,7 @@ from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
 from vehicle.signals.formats.units import STANDARD_GRAVITY
+from vehicle.signals.records.finding import findings_of
 from vehicle.studies.diagnosis.drive_record import SLOW_BAND, DriveRecord, slow
 from vehicle.studies.diagnosis.features import rows_of_points
 
@@ -55,7 +56,15 @@ def oriented(record: DriveRecord, points: Sequence[str], forward: str = "") -> t
         raise ConfigurationError(
             f"--forward {forward}: must be one of {', '.join(STATED)}, with --free POINT for the point of the device"
         )
-    samples, unknown, notices = record.samples.copy(), list[str](), list(record.notices)
+    samples, unknown = record.samples.copy(), list[str]()
+    # Gravity is expected here, and no offset to take out.
+    devices = {f"{point}_acc_{axis}" for point in points for axis in AXES}
+    expected = {
+        each
+        for each in findings_of(record.notices, kinds=("gravity",))
+        if {*each.partition(":")[0].split(", ")} <= devices
+    }
+    notices = [notice for notice in record.notices if notice not in expected]
     for point in points:
         rows = rows_of_points(record.channels, [point])
         if not rows:
