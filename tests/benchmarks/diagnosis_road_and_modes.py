@@ -12,6 +12,7 @@ import sys
 import numpy as np
 
 from vehicle import Car, road
+from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.diagnosis.diagnosis import Diagnostics
 from vehicle.studies.diagnosis.drawn_car import CarPrior
 from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts
@@ -76,7 +77,9 @@ def classes(diagnostics, car):
         run = car.run(drive, "reduced", channels=diagnostics.channels)
         samples = np.array([run[name] for name in diagnostics.channels])[:, run.time >= 4.0]
         found = judged(diagnostics, samples, 1.0 / (run.time[1] - run.time[0])).roughness
-        true = np.mean([index.overall for index, _ in drive.under(car.vehicle).roughness().values()])
+        under = drive.under(car.vehicle)
+        assert isinstance(under, RoadDrive)
+        true = np.mean([index.overall for index, _ in under.roughness().values()])
         print(
             f"class {letter}: IRI {true:.2f} m/km, found {found[0]:.2f} ({found[1]:.2f} to {found[2]:.2f})", flush=True
         )
@@ -94,6 +97,7 @@ def main(words):
     for speed in (40, 60, 80, 110, 140):
         diagnostics = Diagnostics.of(car, PHONE, (speed / 3.6, speed / 3.6), SECONDS, highest=40.0)
         rows = [row for row, name in enumerate(diagnostics.drives.names) if name.startswith("damper ")]
+        assert diagnostics.at_wheels is not None
         print(f"{speed} km/h: phone {rms(diagnostics.learned.left_out[:, rows].ravel()):.3f}, eight "
               f"{rms(diagnostics.at_wheels.left_out[:, rows].ravel()):.3f}", flush=True)  # fmt: skip
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from scenarios.inputs.make_third_car import main as make_record
 from vehicle.commands.diagnose import main, speed_of
 from vehicle.commands.report import main as report
 from vehicle.errors import ConfigurationError
@@ -54,12 +53,3 @@ def test_a_diagnosis_is_reported_alone(tmp_path, capsys):
     assert "without --targets" in capsys.readouterr().err
     assert report([str(tmp_path / "one")]) == 3
     assert "diagnosis.json: is no complete diagnosis" in capsys.readouterr().err
-
-
-def test_the_script_makes_the_shipped_record(tmp_path, monkeypatch):
-    monkeypatch.setattr("sys.argv", ["make_third_car", "--output", str(tmp_path)])
-    make_record()
-    made, shipped = read_record(tmp_path / "third_car.csv"), read_record("third_car.csv")
-    for one, other in zip(made.channels, shipped.channels, strict=True):
-        # Rounded to 0.001 m/s2 and 0.1 km/h; another processor may round the last digit otherwise.
-        np.testing.assert_allclose(one.values, other.values, rtol=0.0, atol=0.0011)

@@ -9,6 +9,7 @@ import scipy
 from vehicle import Car, road
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.output.folder import write_files
+from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.signals.records.choice import Choice
 from vehicle.studies.diagnosis.car_diagnosis import CarDiagnosis
 from vehicle.studies.diagnosis.diagnosis import MOST, Diagnostics, _main_channels
@@ -98,7 +99,9 @@ def test_words_table_and_files_have_the_same_numbers(diagnosis, tmp_path):
 
 def test_the_roughness_index_is_that_of_the_road(diagnosis):
     """The road of the record rated by its own heights; the car, its dampers and the level are unknown to the fit."""
-    rated = [index.overall for index, _ in DRIVE.under(Car.load("sedan").vehicle).roughness().values()]
+    drive = DRIVE.under(Car.load("sedan").vehicle)
+    assert isinstance(drive, RoadDrive)
+    rated = [index.overall for index, _ in drive.roughness().values()]
     middle, low, high = diagnosis.roughness
     assert low < np.mean(rated) < high
     assert middle == pytest.approx(np.mean(rated), rel=0.15)

@@ -157,14 +157,15 @@ class Diagnostics:
             )
         widened = float(np.exp(WIDENING * max(0.0, unlike - USUAL)))
         unknowns = dict(zip(self.drives.names, self.learned.posteriors(features, widened), strict=True))
-        speed, level = unknowns["speed"].quantile(0.5), 10.0 ** unknowns["level"].quantile(0.5)
+        speed, level, waviness = (unknowns[name].quantile(0.5) for name in ("speed", "level", "waviness"))
+        nominal = nominal_modes(self.prior, speed, 10.0**level, waviness)
         return CarDiagnosis(
             record=record.name,
             car=self.car,
             channels=self.channels,
             parts=parts,
             unknowns=unknowns,
-            modes=self.modes.modes(features, widened, nominal_modes(self.prior, speed, level)),
+            modes=self.modes.modes(features, widened, nominal),
             road_pieces=road_pieces(self.drives.pieces, unknowns["roughness"], record, parts, self.highest),
             wheels=in_order(name.removeprefix("damper ") for name in self.drives.names if name.startswith("damper ")),
             unlikely=float(np.mean(self.learned.unlike >= unlike)),

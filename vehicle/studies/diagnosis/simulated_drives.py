@@ -167,10 +167,11 @@ def drawn_road(car: Car, speed: float, rng: np.random.Generator) -> DrawnRoad:
     )
 
 
-def nominal_modes(prior: CarPrior, speed: float, level: float) -> dict[str, ModeValues]:
-    """Return the modes of the car that is not worn on a road with a level [m3] at a speed [m/s]."""
+def nominal_modes(prior: CarPrior, speed: float, level: float, waviness: float) -> dict[str, ModeValues]:
+    """Return the modes of the car that is not worn, at a speed [m/s] on a road with a level [m3] and a waviness."""
     rng = np.random.Generator(np.random.PCG64(1))
-    road = replace(drawn_road(prior.car, speed, rng), level=level, waviness=2.0, variation=0.0)
+    usual = float(np.mean(VARIATION))
+    road = replace(drawn_road(prior.car, speed, rng), level=level, waviness=waviness, variation=usual)
     car = DrawnCar(values={}, poles=prior.car.poles, dampers=prior.nominal, tyre_load=prior.car.static.tyre_load)
     batch = simulated([car], plates_of(road, prior.car, NOMINAL_S, rng), (), car.poles)
     return driven_modes(car.poles, equivalent_constants(batch, car.poles, SETTLED)[0])
