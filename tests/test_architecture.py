@@ -111,7 +111,7 @@ ROOMS: dict[str, set[str]] = {
 """What each room, and each module above the rooms, imports of the package: this and no more, and all of it."""
 
 STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "figures", "flexbody", "formats", "laws"} | {
-    *("linear", "output", "parameters", "reduced", "rendering", "simulation", "sweeps", "threads")
+    *("linear", "output", "parameters", "records", "reduced", "rendering", "simulation", "sweeps", "threads")
 }
 """What `scenarios` imports of the package; the package imports nothing of `scenarios`."""
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import scipy
 
-from vehicle import Car, road
+from vehicle.runs.car import Car, Road
 from vehicle.signals.formats.shipped_record import RECORD_FOLDER
 from vehicle.signals.records.resampled import decimate
 
@@ -37,7 +37,7 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=RECORD_FOLDER, help="folder for the CSV file")
     folder: Path = parser.parse_args().output
     folder.mkdir(parents=True, exist_ok=True)
-    drive = road("C", SPEED, duration=SETTLING + SECONDS, seed=63, period="record")
+    drive = Road("C", SPEED, duration=SETTLING + SECONDS, seed=63, period="record")
     run = Car.load("sedan", CHANGES).run(drive, "reduced", channels=[f"seat_rail_acc_{axis}" for axis in "xyz"])
     rng, factor = np.random.default_rng(63), round(1.0 / (RATE * (run.time[1] - run.time[0])))
     x, y, z = (decimate(run[f"seat_rail_acc_{axis}"], factor)[int(SETTLING * RATE) :] for axis in "xyz")

@@ -42,10 +42,10 @@ def diagnosis_page(folder: Path, *, author: str = "", project: str = "") -> str:
             ("Modes of the driven car", "driven", _modes(summary["modes"])),
             ("Record and limits", "record", _record(summary)),
         ]
-        title, about = f"Dampers of {summary['car']}", f"by {summary['record']}, {number(summary['used_s'])} s used"
+        title, subtitle = f"Dampers of {summary['car']}", f"by {summary['record']}, {number(summary['used_s'])} s used"
     except (ValueError, KeyError, TypeError) as error:
         raise DataError(f"{file}: is no complete diagnosis ({error}); run python -m vehicle diagnose again") from error
-    return document(title, (about, head_line(author, project)), sections)
+    return document(title, (subtitle, head_line(author, project)), sections)
 
 
 def _part(
@@ -122,7 +122,7 @@ def _modes(modes: Sequence[Mapping[str, Any]]) -> Markup:
 
 
 def _record(summary: Mapping[str, Any]) -> Markup:
-    """Return what of the record is used, how alike it is, what would narrow the intervals, and its notices."""
+    """Return used parts, fit, changes that narrow the intervals, limits and notices of the record."""
     slow, fast = summary["speed_kmh"]
     left_out = ", ".join(f"{reason} {number(seconds)} s" for reason, seconds in summary["left_out_s"].items())
     sentences = [

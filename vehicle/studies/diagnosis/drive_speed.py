@@ -97,19 +97,19 @@ def speed_of_positions(time: Vector, latitude: Vector, longitude: Vector) -> tup
     middle = float(np.mean(latitude))
     flat = 1.0 - ECCENTRICITY * np.sin(middle) ** 2
     parallel, meridian = EQUATOR / np.sqrt(flat), EQUATOR * (1.0 - ECCENTRICITY) / flat**1.5
-    place = np.stack([parallel * np.cos(middle) * np.unwrap(longitude), meridian * latitude])
+    position = np.stack([parallel * np.cos(middle) * np.unwrap(longitude), meridian * latitude])
     speeds, errors = np.zeros(time.size), np.full(time.size, np.nan)
     first = np.minimum(np.searchsorted(time, time - AROUND), np.maximum(np.arange(time.size) - 1, 0))
     last = np.maximum(np.searchsorted(time, time + AROUND, "right"), np.arange(time.size) + 2)
     for row, (begin, end) in enumerate(zip(first, last, strict=True)):
         t = time[begin:end] - time[begin:end].mean()
-        each = place[:, begin:end] - place[:, begin:end].mean(axis=1, keepdims=True)
+        each = position[:, begin:end] - position[:, begin:end].mean(axis=1, keepdims=True)
         slope = each @ t / (t @ t)
         speeds[row] = float(np.hypot(*slope))
         if t.size > 2:
             # Variance of a slope, s^2/sum t^2, with n - 2 degrees of freedom; mean of both axes.
-            rest = each - slope[:, None] * t
-            errors[row] = float(np.sqrt(np.sum(rest**2) / (2.0 * (t.size - 2) * (t @ t))))
+            residual = each - slope[:, None] * t
+            errors[row] = float(np.sqrt(np.sum(residual**2) / (2.0 * (t.size - 2) * (t @ t))))
     return time, speeds, float(np.nanmedian(errors))
 
 
