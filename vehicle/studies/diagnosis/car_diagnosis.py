@@ -229,8 +229,7 @@ class CarDiagnosis:
     def __str__(self) -> str:
         """Return sentences, table, road class, used parts and fit."""
         parts, road = self.parts, self.road
-        slow, fast = (3.6 * speed for speed in parts.speeds)
-        speed = f"{slow:.0f} km/h" if fast - slow < 1.0 else f"{slow:.0f} to {fast:.0f} km/h"
+        speed = speed_words([3.6 * speed for speed in parts.speeds])
         left_out = ", ".join(f"{reason} {number(seconds)} s" for reason, seconds in parts.left_out.items())
         more = "; ".join(f"{change}: intervals {number(ratio, 2)} times as wide" for change, ratio in self.more.items())
         widened = f"; intervals are {number(self.widened, 2)} times as wide for that" if self.widened > 1.0 else ""
@@ -301,6 +300,12 @@ class CarDiagnosis:
 def told(posterior: Posterior) -> bool:
     """Return True if the posterior is narrower than the prior."""
     return posterior.deviation <= TELLS * posterior.prior
+
+
+def speed_words(speeds: Sequence[float]) -> str:
+    """Return the least and the greatest speed [km/h] as text, a single number if they are nearly equal."""
+    slow, fast = speeds
+    return f"{slow:.0f} km/h" if fast - slow < 1.0 else f"{slow:.0f} to {fast:.0f} km/h"
 
 
 def percent(share: float) -> str:

@@ -14,7 +14,7 @@ from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.runs.report.markup import templates
 from vehicle.runs.report.page import document, head_line
-from vehicle.studies.diagnosis.car_diagnosis import percent
+from vehicle.studies.diagnosis.car_diagnosis import percent, speed_words
 from vehicle.studies.diagnosis.diagnosis_files import PICTURE, SUMMARY
 
 fill = templates(__file__)
@@ -123,10 +123,9 @@ def _modes(modes: Sequence[Mapping[str, Any]]) -> Markup:
 
 def _record(summary: Mapping[str, Any]) -> Markup:
     """Return used parts, fit, changes that narrow the intervals, limits and notices of the record."""
-    slow, fast = summary["speed_kmh"]
     left_out = ", ".join(f"{reason} {number(seconds)} s" for reason, seconds in summary["left_out_s"].items())
     sentences = [
-        f"Used: {number(summary['used_s'])} s at {number(slow)} to {number(fast)} km/h; channels "
+        f"Used: {number(summary['used_s'])} s at {speed_words(summary['speed_kmh'])}; channels "
         f"{', '.join(summary['channels'])}." + (f" Left out: {left_out}." if left_out else ""),
         f"Of {summary['drives']} simulated drives {100.0 * summary['as_unlike']:.0f} % are at least as unlike the "
         "others as this record.",
