@@ -202,7 +202,7 @@ def plates_of(road: DrawnRoad, car: Car, duration: float, rng: np.random.Generat
 def simulated(
     cars: Sequence[DrawnCar], plates: Signal, channels: Sequence[str], poles: PoleModel | None = None
 ) -> BatchRuns:
-    """Return channels of cars on a road, with `poles` also those of their dampers."""
+    """Return channels of cars on a road; with `poles` also velocities and forces of their dampers."""
     dampers = () if poles is None else damper_channels(poles)
     return simulate_batch(
         [each.poles for each in cars],
