@@ -43,7 +43,7 @@ class RoadPiece:
 
     Attributes:
         start: distance [m] and time [s] of its begin, from the begin of the record.
-        end: those of its end.
+        end: distance [m] and time [s] of its end.
         index: IRI [m/km].
     """
 
