@@ -261,8 +261,8 @@ z;0;0;3200
 )  # fmt: skip
 
 SCRIPT = MadeTable(
-    "full-vehicle model as it is quoted from Ikenaga, Lewis, Campos, Davis, American Control Conference 2000 (the paper "
-    "itself was not read)", "script.m",
+    "full-vehicle model as it is quoted from Ikenaga, Lewis, Campos, Davis, American Control Conference 2000 (the "
+    "paper itself was not read)", "script.m",
     """% full vehicle model
 ms = 1500;      % sprung mass, kg
 mus = 59;       % unsprung mass at each wheel, kg
