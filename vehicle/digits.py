@@ -5,12 +5,12 @@ from collections.abc import Sequence
 
 
 def finite(value: float) -> float | None:
-    """Return a finite number; None for NaN and infinity, which JSON does not have."""
+    """Return a finite number, or an empty value for NaN and infinity, for which JSON has no sign."""
     return float(value) if math.isfinite(value) else None
 
 
 def number_in(text: str) -> float:
-    """Return the number that a text is; NaN if it is none."""
+    """Return the number of a text; NaN for another text."""
     try:
         return float(text)
     except ValueError:
