@@ -110,7 +110,8 @@ def next_tests(fits: Sequence[FittedDamper], use: Use | None = None) -> list[Nex
     """Return a sine for each highest velocity and condition, in the order of the remaining uncertainty.
 
     Args:
-        fits: laws of one damper at all its conditions; each counts alike, and a test changes the law of its conditions only.
+        fits: laws of one damper at all its conditions; each counts alike, and a test changes only the law of its
+            conditions.
         use: velocities at which the force matters; default: `even_use`.
     """
     designs = [Design(fitted, use or even_use()) for fitted in fits]
