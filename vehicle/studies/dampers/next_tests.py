@@ -56,12 +56,22 @@ WORTH = 0.9
 """Largest ratio of the uncertainties with and without a further test that is worth it."""
 
 
+class Quantity(NamedTuple):
+    """Result of a car that depends on the force of its dampers."""
+
+    name: str  # with its road, for example "stick share on class A"
+    value: str  # with its unit
+    slopes: Vector  # change of the result [%] over the force at each velocity of the use [N]; (v,)
+    unit: str = "%"  # of its uncertainty
+
+
 class Use(NamedTuple):
     """Velocities at which the force matters."""
 
     velocity: Vector  # both directions, without zero [m/s]; (v,)
     shares: Vector | None = None  # of the time; None: the relative error counts, alike at all velocities; (v,)
     caption: str = f"{1e3 * SLOWEST:g} to {1e3 * FASTEST:g} mm/s, each octave alike"
+    quantities: tuple[Quantity, ...] = ()  # results of a car
 
     def weights(self, force: Vector) -> Vector:
         """Return w [1/N^2]: 1/(v F^2), or the shares of the time over the mean square of the force; (v,)."""
@@ -78,6 +88,7 @@ class NextTest(NamedTuple):
     frequency: float  # [Hz]
     before: float  # before, after: u without and with the test [-], root of the mean square over all conditions
     after: float
+    quantities: tuple[tuple[str, float, float], ...] = ()  # name, before and after [%] of results of a car
 
     @property
     def velocity(self) -> float:
@@ -115,21 +126,23 @@ def next_tests(fits: Sequence[FittedDamper], use: Use | None = None) -> list[Nex
         use: velocities at which the force matters; default: `even_use`.
     """
     designs = [Design(fitted, use or even_use()) for fitted in fits]
-    squares = np.array([design.uncertainty() ** 2 for design in designs])
+    now = [design.uncertainty() for design in designs]
+    squares = np.array([uncertainty**2 for uncertainty, _ in now])
     before, tests = float(np.sqrt(np.mean(squares))), []
     for fitted, design, square in zip(fits, designs, squares, strict=True):
         others = np.mean(squares) - square / len(fits)
         amplitudes = sorted({rounded(each, 2) for each in fitted.tested["amplitude"]})
         for speed in SPEEDS:
             sines = [(each, rounded(float(speed / (2.0 * np.pi * each)), 2)) for each in amplitudes]
-            left = [
-                NextTest(
-                    fitted.condition_words, *sine, before,
-                    after=float(np.sqrt(others + design.uncertainty(*sine) ** 2 / len(fits))),
-                )
-                for sine in sines
-                if LOWEST <= sine[1] <= HIGHEST
-            ]  # fmt: skip
+            left = []
+            for sine in sines:
+                if LOWEST <= sine[1] <= HIGHEST:
+                    after, results = design.uncertainty(*sine)
+                    # Results of a car belong to a single law.
+                    rows = zip([each.name for each in design.use.quantities], now[0][1], results, strict=True)
+                    of_car = tuple(rows) if len(fits) == 1 else ()
+                    whole = float(np.sqrt(others + after**2 / len(fits)))
+                    left.append(NextTest(fitted.condition_words, *sine, before, whole, of_car))
             tests += [min(left, key=lambda test: test.after)] if left else []
     return sorted(tests, key=lambda test: test.after)
 
@@ -157,12 +170,34 @@ def next_lines(tests: Sequence[NextTest], use: Use | None = None) -> list[str]:
     heads = HEADS[: len(tests[0].cells)]
     rows = [heads, *(test.cells for test in tests[:SHOWN])]
     table = ["".join(f"{cell:>{len(head) + 2}}" for head, cell in zip(heads, row, strict=True)) for row in rows]
-    return [f"next: {next_sentence(tests, use)}", *table]
+    return [f"next: {next_sentence(tests, use)}", *table, *(f"next: {text}" for text in result_sentences(tests, use))]
+
+
+def result_sentences(tests: Sequence[NextTest], use: Use | None = None) -> list[str]:
+    """Return for each result of the car the test that leaves its smallest uncertainty, in words."""
+    sentences = []
+    for index, quantity in enumerate((use or even_use()).quantities if tests and tests[0].quantities else ()):
+        best = min(tests, key=lambda test: test.quantities[index][2])
+        _, before, after = best.quantities[index]
+        amplitude, frequency, velocity, *_ = best.cells
+        start = f"the {quantity.name}, {quantity.value}, has an uncertainty of {number(before, 2)} {quantity.unit}"
+        if after > WORTH * before:
+            sentences.append(f"{start}; no further sine takes a tenth off")
+        else:
+            sentences.append(
+                f"{start}; a sine of {amplitude} mm with {frequency} Hz, up to {velocity} mm/s, would reduce it to "
+                f"{number(after, 2)} {quantity.unit}"
+            )
+    return sentences
 
 
 def next_json(tests: Sequence[NextTest], use: Use | None = None) -> dict[str, Any]:
     """Return the first test in words and all tests for `--json`, in SI units."""
-    rows = [test._asdict() | {"velocity": test.velocity} for test in tests]
+    rows = [
+        test._asdict() | {"velocity": test.velocity}
+        | {"quantities": [{"name": n, "before": b, "after": a} for n, b, a in test.quantities]}
+        for test in tests
+    ]  # fmt: skip
     return {"next_test": next_sentence(tests, use), "next_tests": rows}
 
 
@@ -170,6 +205,7 @@ class Design:
     """Deviations of the force of a fitted damper, and what a further test leaves of them."""
 
     def __init__(self, fitted: FittedDamper, use: Use) -> None:
+        self.use = use
         self.chosen, self.speeds, self.highest = fitted.fit, fitted.speeds, float(np.max(np.abs(use.velocity)))
         self.laws = [fitted.fit, *(fit for fit in fitted.accepted if fit.tested_law != fitted.fit.tested_law)]
         # Unknown force below the slowest test, in steps between the velocities of the use.
@@ -195,8 +231,10 @@ class Design:
         self.smallest = min(e * test.scale for e, test in zip(self.chosen.fitted.tolist(), fitted.tests, strict=True))
         self.samples = float(np.median([np.count_nonzero(test.settled) for test in fitted.tests]))
 
-    def uncertainty(self, amplitude: float = 0.0, frequency: float = 0.0) -> float:
-        """Return u after a further sine [-]; without one, that of the tests.
+    def uncertainty(self, amplitude: float = 0.0, frequency: float = 0.0) -> tuple[float, list[float]]:
+        """Return u after a further sine [-], and the uncertainties of the results of the car [%].
+
+        Without a sine they are those of the tests.
 
         Args:
             amplitude, frequency: of the sine [m], [Hz].
@@ -216,7 +254,10 @@ class Design:
             counts = self.samples / self.effect, 1.0
             variances = (error**2 * SAMPLES / count for count in counts)
             left = [_updated(*each) for each in zip(left, observed, variances, strict=True)]
-        return float(np.sqrt(sum(self.weights @ np.sum(group**2, axis=1) for group in left)))
+        force = float(np.sqrt(sum(self.weights @ np.sum(group**2, axis=1) for group in left)))
+        return force, [
+            float(np.sqrt(sum(np.sum((each.slopes @ group) ** 2) for group in left))) for each in self.use.quantities
+        ]
 
     def _deviations(self, forces: Sequence[tuple[Vector, Vector]], velocity: Vector, seen: float = 0.0) -> list[Vector]:
         """Return the deviations of the force by the parameters, and by the structure; (n, d) each.
