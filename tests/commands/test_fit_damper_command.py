@@ -61,9 +61,12 @@ def test_files_and_summary(tmp_path, capsys):
     assert (folder / "damper_tests.csv").read_text().count("\n") == 3
 
 
-def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_path):
+def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_path, capsys):
     files = records(tmp_path, (800.0, 2400.0), ("_0A", "_1A"))
-    assert main([*files, "--pattern", "*_{current}A", "--quiet", "--output", str(tmp_path / "out")]) == 0
+    assert main([*files, "--pattern", "*_{current}A", "--json", "--output", str(tmp_path / "out")]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {test["condition"] for test in found["next_tests"]} == {"current 0", "current 1"}
+    assert all(test["after"] <= test["before"] for test in found["next_tests"])
     names = {path.name for path in (tmp_path / "out").iterdir() if path.suffix in (".toml", ".png", ".csv")}
     assert names == {"damper_tests.csv", "damper_control.toml", "damper_control.png"} | {
         f"damper_{name}current_{current}.{ending}"
@@ -72,6 +75,7 @@ def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_p
     }
     control = tomllib.loads((tmp_path / "out" / "damper_control.toml").read_text())
     assert control == pytest.approx({"minimum_damping": 800.0, "maximum_damping": 2400.0}, rel=0.02)
+    assert found["control"] == [f"damper.control.{name}={value!r}" for name, value in control.items()]
     laws = [tomllib.loads((tmp_path / "out" / f"damper_current_{n}.toml").read_text()) for n in (0, 1)]
     assert [law["tested"]["current"] for law in laws] == [[0.0, 0.0], [1.0, 1.0]]
     assert "# tested.current = [0.0, 1.0]" in (tmp_path / "out" / "damper_control.toml").read_text()

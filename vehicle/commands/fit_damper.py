@@ -97,9 +97,16 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
     from vehicle.signals.records.choice import pairs
     from vehicle.studies.dampers.damper_band import band_of, band_text
     from vehicle.studies.dampers.damper_page import damper_page, loops_of
-    from vehicle.studies.dampers.damper_text import caption_of, fit_json, summary_lines, tests_text, vehicle_lines
+    from vehicle.studies.dampers.damper_text import (
+        caption_of,
+        fit_json,
+        set_lines,
+        summary_lines,
+        tests_text,
+        vehicle_lines,
+    )
     from vehicle.studies.dampers.fitted_damper import fit_damper
-    from vehicle.studies.dampers.next_tests import even_use, next_json, next_lines, next_sentence, next_tests
+    from vehicle.studies.dampers.next_tests import even_use, next_json, next_lines, next_tests
     from vehicle.studies.dampers.over_condition import control_lines, curve_lines
     from vehicle.studies.dampers.over_condition import settings_of as laws_of
 
@@ -126,7 +133,7 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
             fits,
             console.command("vehicle fit-damper"),
             further,
-            next_sentence(further, use),
+            use,
             author=settings.author,
             project=settings.project,
         ),
@@ -152,7 +159,8 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
     summary = [line for fitted, same in zip(fits, again, strict=True) for line in summary_lines(fitted, same)]
     summary += next_lines(further, use)
     summary.append(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
-    result = texts[0] if len(texts) == 1 else {"dampers": texts}
+    control = set_lines(control_lines(fits), "damper.control")
+    result = texts[0] if len(texts) == 1 else {"dampers": texts, "control": control}
     console.result(result | next_json(further, use), "\n".join(summary))
 
 

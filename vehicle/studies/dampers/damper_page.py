@@ -24,7 +24,7 @@ from vehicle.studies.dampers.damper_text import (
     vehicle_lines,
 )
 from vehicle.studies.dampers.fitted_damper import FittedDamper
-from vehicle.studies.dampers.next_tests import HEADS, NextTest
+from vehicle.studies.dampers.next_tests import HEADS, NextTest, Use, next_sentence, result_sentences
 from vehicle.studies.dampers.over_condition import control_lines, curve_lines, settings_of
 
 fill = templates(__file__)
@@ -34,13 +34,18 @@ PAGE_POINTS = 600
 
 
 def damper_page(
-    fits: Sequence[FittedDamper], command: str, further: Sequence[NextTest] = (), sentence: str = "", *,
-    author: str = "", project: str = "",
-) -> str:  # fmt: skip
+    fits: Sequence[FittedDamper],
+    command: str,
+    further: Sequence[NextTest] = (),
+    use: Use | None = None,
+    *,
+    author: str = "",
+    project: str = "",
+) -> str:
     """Return the report of fitted dampers as one HTML document.
 
     Args:
-        further, sentence: further tests and the sentence on them, see `next_tests`.
+        further, use: further tests, and the velocities at which the force matters; see `next_tests`.
     """
     parts = []
     if len(fits) > 1:
@@ -50,13 +55,8 @@ def damper_page(
         parts.append((f"Law{f' at {condition}' if condition else ''}", f"law{number_of_fit}", _law(fitted)))
     if further:
         heads, rows = HEADS[: len(further[0].cells)], [test.cells for test in further]
-        parts.append(
-            (
-                "Next test",
-                "next",
-                fill("next_test", sentence=f"{sentence[:1].upper()}{sentence[1:]}.", heads=heads, rows=rows),
-            )
-        )
+        texts = [next_sentence(further, use), *result_sentences(further, use)]
+        parts.append(("Next test", "next", fill("next_test", texts=texts, heads=heads, rows=rows)))
     parts.append(("How to repeat the fit", "repeat", fill("repeat_damper", command=command)))
     tests = dict.fromkeys(test for fitted in fits for test in fitted.tests)
     return document(f"Damper from {len(tests)} test{'s'[: len(tests) > 1]}", (head_line(author, project),), parts)

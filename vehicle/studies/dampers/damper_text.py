@@ -233,6 +233,12 @@ def _line(name: str, value: float, unit: str, error: float) -> str:
     return f"{name} = {_short(float(value))}  # [{unit}] standard error {number(error, 2)}"
 
 
+def set_lines(text: str, section: str) -> list[str]:
+    """Return the lines of a section of a vehicle file as `section.key=value`, for `--set` after the name of an axle."""
+    lines = (line.partition("#")[0].strip() for line in text.splitlines())
+    return [f"{section}.{line.replace(' = ', '=', 1)}" for line in lines if line]
+
+
 def fit_json(fitted: FittedDamper) -> dict[str, Any]:
     """Return the fit for `--json`: law, parameters, lines for `--set`, and the errors of the tests.
 
@@ -240,7 +246,6 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
     `left_out` the same of the law fitted to the other tests; None for a single test.
     """
     fit = fitted.fit
-    lines = (line.partition("#")[0].strip() for line in vehicle_lines(fitted).splitlines())
     errors = zip(fitted.tests, fit.fitted.tolist(), fit.left_out.tolist(), fit.whole.tolist(), strict=True)
     return {
         "conditions": dict(fitted.conditions),
@@ -256,7 +261,7 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
                 fit.law.parameters.items(), fit.values.tolist(), fit.errors.tolist(), strict=True
             )
         ],
-        "set": [f"damper.{line.replace(' = ', '=', 1)}" for line in lines if line],
+        "set": set_lines(vehicle_lines(fitted), "damper"),
         "tests": [
             {
                 "file": test.name,

@@ -169,7 +169,8 @@ def next_lines(tests: Sequence[NextTest], use: Use | None = None) -> list[str]:
         return []
     heads = HEADS[: len(tests[0].cells)]
     rows = [heads, *(test.cells for test in tests[:SHOWN])]
-    table = ["".join(f"{cell:>{len(head) + 2}}" for head, cell in zip(heads, row, strict=True)) for row in rows]
+    widths = [2 + max(map(len, column)) for column in zip(*rows, strict=True)]
+    table = ["".join(f"{cell:>{width}}" for width, cell in zip(widths, row, strict=True)) for row in rows]
     return [f"next: {next_sentence(tests, use)}", *table, *(f"next: {text}" for text in result_sentences(tests, use))]
 
 
