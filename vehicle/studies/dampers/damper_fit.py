@@ -246,9 +246,9 @@ def covariances(
     relative = [inverse @ each @ inverse for each in (middle, noise)]
     # Before the tests, a positive parameter is known within a factor e: larger relative errors are beyond the linear
     # propagation, and would make the force as uncertain as a parameter without effect on it.
-    known = np.diag([0.0 if name in LINEAR else 1.0 for name in law.parameters])
+    precision = np.diag([0.0 if name in LINEAR else 1.0 for name in law.parameters])
     prior = [
-        each - each @ known @ np.linalg.solve(known @ each @ known + np.eye(sizes.size), known @ each)
+        each - each @ precision @ np.linalg.solve(precision @ each @ precision + np.eye(sizes.size), precision @ each)
         for each in relative
     ]
     return np.array([0.5 * (each + each.T) * np.outer(sizes, sizes) for each in prior])

@@ -164,7 +164,7 @@ def bends_beyond(fit: DamperFit, fastest: float, highest: float, moving: Vector)
     Args:
         fit: law without the bend.
         fastest, highest: velocities between which the law may bend [m/s].
-        moving: velocities of the damper [m/s], none of them zero; (n,).
+        moving: velocities of the damper, without zero [m/s]; (n,).
     """
     force = steady_force(fit.law, fit.parameters, moving)[0]
     shares = (np.arange(CASES) + 0.5) / CASES

@@ -171,15 +171,15 @@ def _mount_lines(fitted: FittedDamper, spread: Mapping[str, float]) -> list[str]
         where = "where the eye of the test is the mount"
         return [*lines, f"# [AXLE.bushings.MOUNT] stiffness.z = {_short(values.series)} {where}"]
     # The outer segments of a table go on with their slope, K.
-    reach = max(float(np.max(np.abs(test.force))) for test in fitted.tests)
-    ends = [0.5 * values.gap, 0.5 * values.gap + reach / values.series]
+    largest = max(float(np.max(np.abs(test.force))) for test in fitted.tests)
+    ends = [0.5 * values.gap, 0.5 * values.gap + largest / values.series]
     displacement = ", ".join(_short(each) for each in (-ends[1], -ends[0], ends[0], ends[1]))
     return [
         *lines,
         f"# gap {1e3 * values.gap:.4g} mm, standard error {number(1e3 * spread['gap'], 2)} mm, in series with both, in "
         "place of stiffness.z where the eye of the test is the mount of the damper alone:",
         f"# [AXLE.bushings.MOUNT] table_z = {{ displacement = [{displacement}], force = "
-        f"[{_short(-reach)}, 0.0, 0.0, {_short(reach)}] }}",
+        f"[{_short(-largest)}, 0.0, 0.0, {_short(largest)}] }}",
         f"# {values.outer_friction:.4g} N of friction beside the gap has no element in the vehicle file: without it, "
         "and without this mount, the errors of the tests do not hold in the car",
     ]

@@ -1,12 +1,12 @@
 """Further tests of a damper, with the uncertainty of its force over the velocity that each would leave.
 
-The force of curve and sliding friction F(v) deviates from that of the chosen law in directions of unit variance: the
-columns of A, (v, d). The columns of B, (n, d), are the same deviations in n samples of a further test. With independent
+The force of curve and sliding friction F(v) deviates from the chosen law in directions of unit variance: the columns of
+A, (v, d). The columns of B, (n, d), are the same deviations in n samples of a further test. With independent
 errors of variance R, the test leaves
 
     cov F = A (1 + B'B/R)^-1 A',    u^2 = sum over velocities of w cov F(v, v),
 
-the linear update of a normal distribution; the weights w are those of `Use`. The directions are of two groups:
+the linear update of a normal distribution; for the weights w see `Use`. The directions are of two groups:
 
     parameters: dF/dp L/sqrt(m) for each of the m laws within the tolerance, with the covariance L L' of its parameters;
     and above the fastest test a further bend, each case with the root of its probability (`damper_ranges`);
@@ -15,8 +15,8 @@ the linear update of a normal distribution; the weights w are those of `Use`. Th
 
 A further test of N samples with the relative error e of the fits has R = n s^2/N, s^2 = max(e^2 var F, r^2) with the
 smallest RMS error r of the tests [N]. For the parameters N is divided by the ratio of the variances of the curve from
-correlated to those from independent residuals (design effect, Kish 1965): the residuals of the further test are as
-correlated as those of the others. For the structure N is 1: the choice compares laws by the RMS error of whole tests
+correlated and from independent residuals (design effect, Kish 1965): the residuals of the further test are as
+correlated as in the other tests. For the structure N is 1: the choice compares laws by the RMS error of whole tests
 (`damper_choice`), and the tests that were fitted contain slow samples too, which did not decide. For the same reason,
 the samples below half of the highest velocity of a test do not show the unknown force there.
 
@@ -235,7 +235,7 @@ class Design:
     def uncertainty(self, amplitude: float = 0.0, frequency: float = 0.0) -> tuple[float, list[float]]:
         """Return u after a further sine [-], and the uncertainties of the results of the car [%].
 
-        Without a sine they are those of the tests.
+        Without a sine, only the tests count.
 
         Args:
             amplitude, frequency: of the sine [m], [Hz].
