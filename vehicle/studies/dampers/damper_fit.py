@@ -10,6 +10,8 @@ any way), or of independent residuals of equal size in each test where these are
 
     cov = H^-1 (sum over blocks of g_b g_b') H^-1 B/(B - 1),   H = J'J,   g_b = J_b' r_b.
 
+A positive parameter has the standard deviation 1 of its logarithm before the tests.
+
 Source of the blocks: Liang and Zeger, Biometrika 73 (1986).
 """
 
@@ -241,7 +243,15 @@ def covariances(
         scores += [columns[rows].T @ (shares[rows] * error[rows]) for rows in test.cycle_rows]
     inverse = np.linalg.pinv(curvature, hermitian=True, rcond=1e-12)
     middle = np.array(scores).T @ np.array(scores) * len(scores) / (len(scores) - 1)
-    return np.array([inverse @ each @ inverse * np.outer(sizes, sizes) for each in (middle, noise)])
+    relative = [inverse @ each @ inverse for each in (middle, noise)]
+    # Before the tests, a positive parameter is known within a factor e: larger relative errors are beyond the linear
+    # propagation, and would make the force as uncertain as a parameter without effect on it.
+    precision = np.diag([0.0 if name in LINEAR else 1.0 for name in law.parameters])
+    prior = [
+        each - each @ precision @ np.linalg.solve(precision @ each @ precision + np.eye(sizes.size), precision @ each)
+        for each in relative
+    ]
+    return np.array([0.5 * (each + each.T) * np.outer(sizes, sizes) for each in prior])
 
 
 def deviations(spreads: Vector, rows: Vector) -> Vector:

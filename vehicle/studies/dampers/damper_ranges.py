@@ -158,6 +158,26 @@ def bend_probability(before: int, octaves: float, further: float) -> float:
     return float(1.0 - (1.0 - (before + 1.0) / (before + octaves + 2.0)) ** further)
 
 
+def bends_beyond(fit: DamperFit, fastest: float, highest: float, moving: Vector) -> Vector:
+    """Return the changes of the force [N] by a bend above the fastest test, `CASES` velocities and slopes; (cases, n).
+
+    Args:
+        fit: law without the bend.
+        fastest, highest: velocities between which the law may bend [m/s].
+        moving: velocities of the damper, without zero [m/s]; (n,).
+    """
+    force = steady_force(fit.law, fit.parameters, moving)[0]
+    shares = (np.arange(CASES) + 0.5) / CASES
+    changes = []
+    for at in fastest * (highest / fastest) ** shares:
+        before = np.clip(moving, -at, at)
+        held = steady_force(fit.law, fit.parameters, before)[0]
+        # Slope of a force in proportion to the velocity, or of the last segment.
+        largest = np.maximum(held / before, (force - held) / np.where(moving == before, np.inf, moving - before))
+        changes += [held + share * largest * (moving - before) - force for share in shares]
+    return np.array(changes)
+
+
 def _bend_beyond(fit: DamperFit, slowest: float, fastest: float, velocity: float) -> tuple[float, float]:
     """Return the mean square and the limit of nine of ten squares of the error by a bend beyond the fastest test.
 
@@ -165,17 +185,9 @@ def _bend_beyond(fit: DamperFit, slowest: float, fastest: float, velocity: float
     """
     bend = bend_probability(fit.law.bends, *np.log2([fastest / slowest, velocity / fastest]))
     moving = velocity * np.sin(2.0 * np.pi * (np.arange(PHASES) + 0.5) / PHASES)
-    force = steady_force(fit.law, fit.parameters, moving)[0]
-    shares = (np.arange(CASES) + 0.5) / CASES
-    squares = []
-    for at in fastest * (velocity / fastest) ** shares:
-        before = np.clip(moving, -at, at)
-        held = steady_force(fit.law, fit.parameters, before)[0]
-        # Slope of a force in proportion to the velocity, or of the last segment.
-        largest = np.maximum(held / before, (force - held) / np.where(moving == before, np.inf, moving - before))
-        for share in shares:
-            bent = held + share * largest * (moving - before)
-            squares.append(float(np.mean((force - bent) ** 2) / np.var(bent)))
+    changes = bends_beyond(fit, fastest, velocity, moving)
+    bent = steady_force(fit.law, fit.parameters, moving)[0] + changes
+    squares = np.mean(changes**2, axis=1) / np.var(bent, axis=1)
     # The limit is exceeded in one of ten tests: in a share of the cases, if a bend is more probable than that.
     inside = 1.0 - (1.0 - SHARE) / bend
     return bend * float(np.mean(squares)), float(np.quantile(squares, inside)) if inside > 0.0 else 0.0
