@@ -304,22 +304,23 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
     sticking = sticking.copy()
     sticking[:, motion.firsts] = False  # t is zero there
     size = m + 1
-    right = np.zeros((n, size, len(names)))
-    right[:, 0, 0] = -1.0
-    right[:, 0, 1 : 1 + curve.shape[1]] = curve
+    # Both arrays are the transposes of those of LAPACK, which has columns in sequence.
+    right = np.zeros((len(names), n, size))
+    right[0, :, 0] = -1.0
+    right[1 : 1 + curve.shape[1], :, 0] = curve.T
     engaged = _engaged(values, s)
     spring = np.where((engaged == 0.0) & law.gap, 0.0, values.series)
     gap = 0.5 * spring * np.sign(s)
-    right[:, 0, names.index("series_stiffness")] = -engaged
+    right[names.index("series_stiffness"), :, 0] = -engaged
     if law.gap:
-        right[:, 0, names.index("gap")] = gap
+        right[names.index("gap"), :, 0] = gap
     if law.gas_stiffness:
-        right[:, 0, names.index("gas_stiffness")] = u
-    band = np.zeros((2 * size + 1, n, size))
+        right[names.index("gas_stiffness"), :, 0] = u
+    band = np.zeros((n, size, 2 * size + 1))
 
     def entry(row: int, column: int, lag: int, value: npt.ArrayLike) -> None:
         """Set the entries of all samples in a row of the equations, for an unknown `lag` samples earlier."""
-        band[row - column + lag * size, : n - lag, column] = np.broadcast_to(value, n)[lag:]
+        band[: n - lag, column, row - column + lag * size] = np.broadcast_to(value, n)[lag:]
 
     held = sticking * values.stiffness[:, None]
     total = np.sum(held, axis=0)
@@ -328,9 +329,9 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
     entry(0, 0, 2, slope * far)
     for i, stuck in enumerate(sticking):
         at, limit = names.index(f"slider_limit_{i + 1}"), values.limit[i]
-        right[:, i + 1, at] = np.where(stuck, du * held[i] / limit, np.sign(du))
-        right[:, i + 1, at + 1] = -du * held[i] ** 2 / limit
-        right[:, 0] += right[:, i + 1]
+        right[at, :, i + 1] = np.where(stuck, du * held[i] / limit, np.sign(du))
+        right[at + 1, :, i + 1] = -du * held[i] ** 2 / limit
+        right[:, :, 0] += right[:, :, i + 1]
         entry(i + 1, i + 1, 0, 1.0)
         entry(i + 1, 0, 0, held[i])
         entry(i + 1, 0, 1, -held[i])
@@ -338,13 +339,15 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
         entry(0, i + 1, 1, -1.0 * stuck)
     # First sample: s is the measured force over K, t is zero.
     first = motion.firsts
-    band[0, first, 0] = values.series
-    right[first] = 0.0
-    right[first, 0, names.index("series_stiffness")] = -engaged[first]
+    band[first, 0, 0] = values.series
+    right[:, first] = 0.0
+    right[names.index("series_stiffness"), first, 0] = -engaged[first]
     if law.gap:
-        right[first, 0, names.index("gap")] = 0.5 * values.series * np.sign(s[first])
-    solution, _ = scipy.linalg.lapack.dtbtrs(band.reshape(2 * size + 1, -1), right.reshape(n * size, -1), uplo="L")
-    columns = spring[:, None] * solution.reshape(n, size, -1)[:, 0]
+        right[names.index("gap"), first, 0] = 0.5 * values.series * np.sign(s[first])
+    solution, _ = scipy.linalg.lapack.dtbtrs(
+        band.reshape(n * size, -1).T, right.reshape(len(names), -1).T, uplo="L", overwrite_b=True
+    )
+    columns = spring[:, None] * solution[::size]
     columns[:, names.index("series_stiffness")] += engaged
     if law.gap:
         columns[:, names.index("gap")] -= gap
