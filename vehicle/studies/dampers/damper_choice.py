@@ -40,7 +40,7 @@ from vehicle.studies.dampers.damper_fit import (
     squares_of,
 )
 from vehicle.studies.dampers.damper_law import DamperLaw
-from vehicle.studies.dampers.damper_ranges import range_errors
+from vehicle.studies.dampers.damper_ranges import law_differences, range_errors
 from vehicle.studies.dampers.damper_starts import first_start, starts_from_larger, starts_of
 from vehicle.studies.dampers.damper_test import DamperTest
 from vehicle.studies.dampers.joint_tests import joint
@@ -184,6 +184,8 @@ def choose_law(
     chosen = dataclasses.replace(
         finished(tests, whole), ranges=chosen.ranges, accepted=True, tolerance=tolerance_of(errors)
     )
+    within = [fit for fit in compared if fit.accepted]
+    chosen = dataclasses.replace(chosen, differences=law_differences(few, chosen, within))
     return chosen, compared
 
 

@@ -31,6 +31,9 @@ from vehicle.studies.dampers.joint_tests import joint
 DETERMINED = 0.5
 """Maximum relative standard error of a parameter that the tests determine."""
 
+TRACE = 1.28
+"""Standard errors of an upper limit in nine of ten cases (normal distribution)."""
+
 LARGEST = 1e6
 """Largest square of an error over the standard deviation of the force; larger or infinite errors count as this."""
 
@@ -74,13 +77,25 @@ class DamperFit:
     tolerance: float = np.nan  # of the logarithm of the error left out, in the choice of this law
     # errors of ranges that the fit does not contain, see `damper_choice.range_errors`: range to (tests,)
     ranges: Mapping[str, Vector] = field(default_factory=dict)
-    systematic: float = np.inf  # RMS of the systematic part of the residuals, over the standard deviation of the force
+    # upper limit of the RMS of the systematic part of the residuals, over the standard deviation of the force
+    systematic: float = np.inf
+    # mean squares by which the accepted laws differ below the tests, by octaves; see `damper_ranges.law_differences`
+    differences: Vector = field(default_factory=lambda: np.zeros(1))
     half_of: DamperLaw | None = None  # law with a changing setting, of which this is the soft or the firm one
 
     @property
     def left_out_error(self) -> float:
         """Geometric mean of the RMS errors left out and `FLOOR`, over the standard deviation of the force."""
         return float(np.exp(np.mean(self.logarithms)))
+
+    @property
+    def further(self) -> Vector:
+        """Return the errors of whole tests left out; NaN with a single test; (tests,).
+
+        With two tests these are the errors in each by the fit to the other: parts of a record left out are inside what
+        the fit has seen.
+        """
+        return self.left_out if "other" not in self.ranges else self.ranges["other"][0]
 
     @property
     def logarithms(self) -> Vector:
@@ -204,17 +219,16 @@ def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
     group = joint(tests)
     parameters = fit_law(group, fit.law, [fit.parameters], tolerance=1e-7)
     forces = group.split(group.force_and_slopes(fit.law, parameters)[0])
-    # Neighbours have independent noise: their mean product is the square of what they have in common.
-    common = [
-        np.mean(residual[1:] * residual[:-1])
-        for residual in (
-            (force - test.force)[test.settled] / test.scale for test, force in zip(group, forces, strict=True)
-        )
-    ]
+    residuals = [(force - test.force)[test.settled] / test.scale for test, force in zip(group, forces, strict=True)]
+    # Neighbours have independent noise: their mean product is the square of what they have in common. Noise alone gives
+    # it the standard error mean(r^2)/sqrt(n).
+    common = np.array([np.mean(each[1:] * each[:-1]) for each in residuals])
+    noise = np.array([np.mean(each**2) / np.sqrt(each.size) for each in residuals])
+    trace = max(float(np.mean(common)), 0.0) + TRACE * float(np.sqrt(np.sum(noise**2))) / noise.size
     spreads = covariances(group, fit.law, parameters)
     squares = squares_of(group, fit.law, parameters)
     return dataclasses.replace(
-        fit, parameters=parameters, spreads=spreads, systematic=float(np.sqrt(max(np.mean(common), 0.0))),
+        fit, parameters=parameters, spreads=spreads, systematic=float(np.sqrt(trace)),
         errors=deviations(spreads, sums_of(fit.law)), fitted=np.sqrt(fitted_squares(group, fit.law, parameters)),
         whole=np.sqrt([np.mean(each) for each in squares]),
     )  # fmt: skip

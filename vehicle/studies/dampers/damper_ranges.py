@@ -38,19 +38,22 @@ import numpy as np
 import scipy
 
 from vehicle.arrays import Mask, Vector
-from vehicle.studies.dampers.damper_fit import DamperFit, fit_law, squares_of
-from vehicle.studies.dampers.damper_force import steady_force
+from vehicle.studies.dampers.damper_fit import DamperFit, deviations, fit_law, squares_of
+from vehicle.studies.dampers.damper_force import Motion, force_and_slopes, joined, steady_force
 from vehicle.studies.dampers.damper_law import DamperLaw, plain_parameters, sums_of
 from vehicle.studies.dampers.damper_test import DamperTest
 
 RATIO = 2.0
 """Ratio of velocities to which a law is extrapolated: of samples outside to the nearest sample that is fitted."""
 
-HIDDEN = 5.0
+HIDDEN = 3.9
 """Maximum ratio of the error that an octave of slower motion adds to the systematic part of the residuals."""
 
 LEAST_SAMPLES = 8
 """Minimum number of samples of a test in a range."""
+
+OCTAVES, CYCLE = 6, 200
+"""Number of octaves below the slowest test for which laws are compared, and samples of a cycle there."""
 
 PHASES = 64
 """Even number of velocities in a sine, without zero."""
@@ -94,22 +97,71 @@ def range_errors(tests: Sequence[DamperTest], fit: DamperFit) -> Mapping[str, Ve
     results = {}
     for name, (outside, lowest, highest) in ranges.items():
         masks = [outside(test) & test.settled for test in tests]
-        masks = [mask & (np.count_nonzero(mask) >= LEAST_SAMPLES) for mask in masks]
-        results[name] = np.full((2, len(tests)), np.nan)
-        remaining = [test.settled & ~mask for test, mask in zip(tests, masks, strict=True)]
-        if not any(mask.any() for mask in masks) or not any(mask.any() for mask in remaining):
-            continue
-        start = _bends_within(fit.law, fit.parameters, lowest, highest)
-        for row, parameters in enumerate((fit_law(tests, fit.law, [start], remaining), fit.parameters)):
-            for at, (test, mask, squares) in enumerate(
-                zip(tests, masks, squares_of(tests, fit.law, parameters), strict=True)
-            ):
-                if mask.any():
-                    share = test.weights[mask]
-                    force = test.force[mask] - np.average(test.force[mask], weights=share)
-                    size = np.average(force**2, weights=share) / test.scale**2
-                    results[name][row, at] = np.sqrt(np.average(squares[mask], weights=share) / size)
+        results[name] = _errors_without(
+            tests, fit, [mask & (np.count_nonzero(mask) >= LEAST_SAMPLES) for mask in masks], lowest, highest
+        )
+    if len(tests) == 2:
+        first, second = (
+            _errors_without(tests, fit, [test.settled & (test is left) for test in tests], 0.0, np.inf)
+            for left in tests
+        )
+        results["other"] = np.where(np.isnan(first), second, first)
     return results
+
+
+def _errors_without(
+    tests: Sequence[DamperTest], fit: DamperFit, masks: Sequence[Mask], lowest: float, highest: float
+) -> Vector:
+    """Return the errors in the masks without them in the fit, and with them; (2, tests)."""
+    results = np.full((2, len(tests)), np.nan)
+    remaining = [test.settled & ~mask for test, mask in zip(tests, masks, strict=True)]
+    if not any(mask.any() for mask in masks) or not any(mask.any() for mask in remaining):
+        return results
+    start = _bends_within(fit.law, fit.parameters, lowest, highest)
+    for row, parameters in enumerate((fit_law(tests, fit.law, [start], remaining), fit.parameters)):
+        for at, (test, mask, squares) in enumerate(
+            zip(tests, masks, squares_of(tests, fit.law, parameters), strict=True)
+        ):
+            if mask.any():
+                share = test.weights[mask]
+                force = test.force[mask] - np.average(test.force[mask], weights=share)
+                size = np.average(force**2, weights=share) / test.scale**2
+                results[row, at] = np.sqrt(np.average(squares[mask], weights=share) / size)
+    return results
+
+
+def law_differences(tests: Sequence[DamperTest], fit: DamperFit, accepted: Sequence[DamperFit]) -> Vector:
+    """Return the mean squares by which the accepted laws differ from the chosen one below the tests.
+
+    The motions are sines with the median amplitude of the tests, and 0, 1 ... `OCTAVES` octaves slower than the slowest
+    test. The variance of the chosen law from its parameters is added; both are over the variance of its force. With a
+    changing setting: the larger of soft and firm law.
+
+    Returns:
+        Mean squares by octaves; (`OCTAVES` + 1,).
+    """
+    amplitude = 0.5 * float(np.median([np.ptp(test.displacement) for test in tests]))
+    phase = 2.0 * np.pi * np.arange(2 * CYCLE) / CYCLE
+    motions = []
+    for velocity in speeds_of(tests)[0] / 2.0 ** np.arange(OCTAVES + 1):
+        time = phase * amplitude / velocity
+        motions.append(Motion(time, amplitude * np.sin(phase), velocity * np.cos(phase), 0.0))
+
+    def settled(values: Vector) -> Vector:
+        """Return the values of the last cycle of each sine; (octaves, samples, ...)."""
+        return values.reshape(OCTAVES + 1, 2 * CYCLE, *values.shape[1:])[:, CYCLE:]
+
+    def squares(chosen: DamperFit, others: Sequence[DamperFit]) -> Vector:
+        force, slopes = map(settled, force_and_slopes(chosen.law, chosen.parameters, joined(motions)))
+        total = np.mean([deviations(chosen.spreads, each) ** 2 for each in slopes], axis=1)
+        for other in others:
+            differing = settled(force_and_slopes(other.law, other.parameters, joined(motions))[0]) - force
+            total = total + np.mean(differing**2, axis=1) / len(others)
+        return np.asarray(total / np.var(force, axis=1))
+
+    halves = (False, True) if fit.law.setting else ()
+    pairs = [(fit.at_setting(firm), [each.at_setting(firm) for each in accepted]) for firm in halves]
+    return np.asarray(np.max([squares(*pair) for pair in pairs or [(fit, accepted)]], axis=0))
 
 
 def _bends_within(law: DamperLaw, parameters: Vector, lowest: float, highest: float) -> Vector:
@@ -129,23 +181,25 @@ def expected_error(fit: DamperFit, speeds: tuple[float, float], velocity: float)
         speeds: highest velocities of the slowest and of the fastest test that are fitted [m/s].
         velocity: highest velocity of the further test [m/s].
     """
-    logarithms = np.log(fit.left_out)
+    logarithms = np.log(fit.further)
     tests = logarithms.size
     slowest, fastest = speeds
     slower = velocity < slowest
     distance = np.log(slowest / velocity if slower else max(velocity / fastest, 1.0)) / np.log(RATIO)
-    change, counted = 0.0, 1
+    change, counted, between = 0.0, 1, 0.0
     if distance > 0.0:
         without, fitted = fit.ranges["slower" if slower else "faster"]
         change = max(float(np.nanmean(without**2 - fitted**2)), 0.0)
         if slower:
             change = min(change, HIDDEN**2 * fit.systematic**2)
+            between = float(np.interp(distance, np.arange(fit.differences.size), fit.differences))
         change *= distance
         counted = int(np.count_nonzero(~np.isnan(without)))
     mean, spread = float(np.mean(logarithms)), np.nan
     if tests > 2:
         spread = float(np.std(logarithms, ddof=1) * scipy.stats.t.ppf(SHARE, tests - 1) * np.sqrt(1.0 + 1.0 / tests))
-    at_most = scipy.stats.f.ppf(SHARE, 1, counted) * change
+    at_most = max(scipy.stats.f.ppf(SHARE, 1, counted) * change, scipy.stats.chi2.ppf(SHARE, 1) * between)
+    change = max(change, between)
     if distance > 0.0 and not slower:
         square, limit = _bend_beyond(fit, slowest, fastest, velocity)
         change, at_most = max(change, square), max(at_most, limit)
