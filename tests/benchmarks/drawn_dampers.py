@@ -85,13 +85,17 @@ def outside(rng, number):
     return known
 
 
+def drawn(seed):
+    """Dampers of the family, then those outside."""
+    rng = np.random.default_rng(seed)
+    return [of_family(rng) for _ in range(COUNT)] + [outside(rng, number) for number in range(COUNT)]
+
+
 def main(seed):
     """Print the results of each damper, then all together."""
-    rng = np.random.default_rng(seed)
-    dampers = [of_family(rng) for _ in range(COUNT)] + [outside(rng, number) for number in range(COUNT)]
     right = inside = parameters = 0
     every = []
-    for number, known in enumerate(dampers):
+    for number, known in enumerate(drawn(seed)):
         begun = time.process_time()
         fit, rows = predictions(known, (seed, number), WITHOUT_FAST if number % 2 else WITHOUT_SLOW)
         print(f"{number:2d} {'without fast' if number % 2 else 'without slow'} tests: {fit.law.title}")
