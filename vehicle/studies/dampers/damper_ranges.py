@@ -51,7 +51,7 @@ from vehicle.studies.dampers.damper_test import DamperTest
 RATIO = 2.0
 """Ratio of velocities to which a law is extrapolated: of samples outside to the nearest sample that is fitted."""
 
-HIDDEN = 3.9
+HIDDEN = 4.2
 """Maximum ratio of the error that an octave of slower motion adds to the systematic part of the residuals: calibrated
 on 68 slower tests of 17 made dampers, eight of them outside the family; nine of ten have less
 (`tests/benchmarks/hidden_forces.py`)."""
