@@ -10,6 +10,7 @@ SEED: the ratios of the seven even dampers of that seed, to verify the number on
 """
 
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -38,13 +39,15 @@ def ratios(fit, rows):
 
 def main(seed):
     """Print the errors and ratios of each damper, and the quantile of the ratios."""
-    dampers = [((seed, number), known) for number, known in enumerate(drawn(seed)) if number % 2 == 0]
+    dampers: list[tuple[Any, tuple[int, ...]]] = [
+        (known, (seed, number)) for number, known in enumerate(drawn(seed)) if number % 2 == 0
+    ]
     if seed == CALIBRATED:
-        dampers += [(number, known) for number, known in (KNOWN | STRANGE).items() if number % 2]
+        dampers += [(known, (number,)) for number, known in (KNOWN | STRANGE).items() if number % 2]
     every, values = [], []
-    for number, known in dampers:
-        fit, rows = predictions(known, number, WITHOUT_SLOW)
-        print(f"{number} {fit.law.title}\n{printed(rows)}", flush=True)
+    for known, noise in dampers:
+        fit, rows = predictions(known, noise, WITHOUT_SLOW)
+        print(f"{noise} {fit.law.title}\n{printed(rows)}", flush=True)
         every += rows
         values += ratios(fit, rows)
         print("   ratios", *(f"{value:.2f}" for value in values[-len(rows) :]))

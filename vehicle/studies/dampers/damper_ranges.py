@@ -166,9 +166,10 @@ def law_differences(tests: Sequence[DamperTest], fit: DamperFit, accepted: Seque
             total = total + np.mean(differing**2, axis=1) / len(others)
         return np.asarray(total / np.var(force, axis=1))
 
-    halves = (False, True) if fit.law.setting else ()
-    pairs = [(fit.at_setting(firm), [each.at_setting(firm) for each in accepted]) for firm in halves]
-    return np.asarray(np.max([squares(*pair) for pair in pairs or [(fit, accepted)]], axis=0))
+    if not fit.law.setting:
+        return squares(fit, accepted)
+    halves = [squares(fit.at_setting(firm), [each.at_setting(firm) for each in accepted]) for firm in (False, True)]
+    return np.asarray(np.max(halves, axis=0))
 
 
 def _bends_within(law: DamperLaw, parameters: Vector, lowest: float, highest: float) -> Vector:
