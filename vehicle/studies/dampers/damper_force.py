@@ -291,9 +291,9 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
 
     Unknown in the order s, t_1 ... t_m of each sample; row of s: (K + k_g) ds - dt_1 ... - c dw = explicit derivatives
     of the right side - s dK, with dw = -(a_0 ds + a_1 ds_1 + a_2 ds_2); rows of t_i: dt_i + k_i ds - dt_i1 - k_i ds_1 =
-    du dk_i where it sticks, dt_i = +-dl_i where it slips; k_i is the limit l_i over the stroke. The row of s
-    is then added up with those rows, so each sample follows from earlier ones: a triangular band. With a gap g, s in K s is the
-    deflection e beyond it: de = ds -+ dg/2, and zero in the gap.
+    du dk_i where it sticks, dt_i = +-dl_i where it slips; k_i is the limit l_i over the stroke. The rows of
+    a sample are summed in the first, so each sample follows from earlier ones: a triangular band. With a gap g, s in K s
+    is the deflection e beyond it: de = ds -+ dg/2, and zero in the gap.
     """
     n, m = s.size, len(values.stiffness)
     rates, near, far = motion.rates
@@ -304,7 +304,7 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
     sticking = sticking.copy()
     sticking[:, motion.firsts] = False  # t is zero there
     size = m + 1
-    # Both arrays are transposed, as LAPACK stores columns in sequence.
+    # Both arrays are transposed: LAPACK stores columns in sequence.
     right = np.zeros((len(names), n, size))
     right[0, :, 0] = -1.0
     right[1 : 1 + curve.shape[1], :, 0] = curve.T
