@@ -1,6 +1,6 @@
 """Force of a damper law under measured motions, with its derivatives: `vehicle.studies.dampers.damper_law`.
 
-The motions of several tests are computed in one pass, one after the other (`joined`): each starts at its own force.
+The motions of several tests are computed in one pass (`joined`); each begins with its measured force.
 
 Without a series stiffness the force is a function of velocity and displacement; the force of a Jenkins element follows
 from its displacement after the last slip. With a series stiffness K the deflection s is solved for at each sample,
@@ -292,8 +292,8 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
     Unknown in the order s, t_1 ... t_m of each sample; row of s: (K + k_g) ds - dt_1 ... - c dw = explicit derivatives
     of the right side - s dK, with dw = -(a_0 ds + a_1 ds_1 + a_2 ds_2); rows of t_i: dt_i + k_i ds - dt_i1 - k_i ds_1 =
     du dk_i where it sticks, dt_i = +-dl_i where it slips; k_i is the limit l_i over the stroke. The rows of
-    a sample are summed in the first, so each sample follows from earlier ones: a triangular band. With a gap g, s in K s
-    is the deflection e beyond it: de = ds -+ dg/2, and zero in the gap.
+    a sample are summed in its first row, which gives a triangular band: a sample follows from earlier samples. With a
+    gap g, s in K s is the deflection e beyond it: de = ds -+ dg/2, and zero in the gap.
     """
     n, m = s.size, len(values.stiffness)
     rates, near, far = motion.rates

@@ -141,7 +141,7 @@ def law_differences(tests: Sequence[DamperTest], fit: DamperFit, accepted: Seque
     """Return the mean squares by which the accepted laws differ from the chosen one below the tests.
 
     The motions are sines with the median amplitude of the tests, and 0, 1 ... `OCTAVES` octaves slower than the slowest
-    test. The variance of the chosen law from its parameters is added; both are over the variance of its force. With a
+    test. Added is the variance of the chosen law from its parameters; both are over the variance of its force. With a
     changing setting: the larger of soft and firm law.
 
     Returns:

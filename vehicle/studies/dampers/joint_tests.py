@@ -1,7 +1,7 @@
 """Tests of a damper whose forces by a law are computed together, and stored for the parameters that were tried last.
 
-A law is fitted to all tests and without each of them in turn, from the same start. Each fit needs the forces of the
-start, and its result gives the error in the test left out: one simulation of all tests serves all of them.
+The fits of a law to all tests, and without each test in turn, begin with the same parameters. Each fit needs the forces
+at these parameters, and its result gives the error in the test left out: a simulation of all tests serves all fits.
 """
 
 from collections.abc import Sequence
@@ -33,23 +33,23 @@ class JointTests(tuple[DamperTest, ...]):
         Overflow gives infinite or undefined forces, which a search refuses.
         """
         key = law, parameters.tobytes()
-        found = self._stored.pop(key, None)
-        if found is None:
+        computed = self._stored.pop(key, None)
+        if computed is None:
             with np.errstate(over="ignore", invalid="ignore"):
                 forces, slopes = zip(*(force_and_slopes(law, parameters, each) for each in self._motions), strict=True)
-            found = np.concatenate(forces), np.concatenate(slopes)
-        self._stored[key] = found  # the last one used is at the end
+            computed = np.concatenate(forces), np.concatenate(slopes)
+        self._stored[key] = computed  # the last one used is at the end
         if len(self._stored) > STORED:
             self._stored.pop(next(iter(self._stored)))
-        return found
+        return computed
 
     def split(self, values: Vector) -> list[Vector]:
-        """Return the values of each test, from those over all samples; (n, ...) each."""
+        """Split values over all samples into those of each test; (n, ...) each."""
         return np.split(values, np.cumsum([test.time.size for test in self[:-1]]))
 
     @cached_property
     def _motions(self) -> list[Motion]:
-        """Motions of the tests, in batches of at most `BATCH` samples."""
+        """Return the motions of the tests in batches of at most `BATCH` samples."""
         batches: list[list[Motion]] = []
         size = BATCH
         for test in self:
