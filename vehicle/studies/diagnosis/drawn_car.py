@@ -30,13 +30,14 @@ FRICTION, FRICTION_SIDES, STATIC = 1.7, 1.4, 2.0
 """Ratio by which the friction of both dampers of an axle is smaller or larger, and of one damper further; largest ratio
 of friction at rest and in motion, for Stribeck friction in place of Coulomb friction."""
 
-BEND, REBOUND = 0.25, 1.2
-"""Largest exponent of the shape of a damper, and largest ratio of its rebound and compression, of an axle."""
+BEND, BEND_SIDES, REBOUND = 0.25, 0.2, 1.2
+"""Largest exponent of the shape of the dampers of an axle, and of one damper further, since wear changes the shape too;
+largest ratio of rebound and compression, of an axle."""
 
 TYRE, TYRE_SIDES, TYRE_DAMPING = 1.15, 1.08, 2.0
 """Ratios of the vertical stiffness of the tyres of an axle, of one tyre further, and of their damping."""
 
-SPRING, MOUNT, MOUNT_SIDES, BODY = 1.3, 1.3, 1.2, 1.05
+SPRING, MOUNT, MOUNT_SIDES, BODY = 1.3, 1.3, 1.35, 1.05
 """Ratios of springs and stabilizers, of both bushings of an axle, of one bushing further, and of the body mass."""
 
 LOADS = {"front_left": (0.45, -0.35, 100.0), "front_right": (0.45, 0.35, 100.0), "rear": (0.85, 0.0, 250.0)}
@@ -154,7 +155,8 @@ class CarPrior:
             wheel = placed.name.removeprefix("damper_")
             friction, bend, rebound = axles[axle_and_side(wheel)[0]]
             factor, friction = float(rng.uniform(WEAKEST, STRONGEST)), friction * _ratio(FRICTION_SIDES, rng)
-            dampers.append(drawn_damper(nominal, factor, bend, rebound, friction))
+            own_bend = bend + float(rng.uniform(-BEND_SIDES, BEND_SIDES))
+            dampers.append(drawn_damper(nominal, factor, own_bend, rebound, friction))
             if nominal.friction_law == "coulomb" and rng.random() < 0.5:
                 dampers[-1] = with_static_friction(dampers[-1], float(rng.uniform(1.0, STATIC)))
             values |= {f"damper {wheel}": factor, f"friction {wheel}": friction}
