@@ -22,7 +22,7 @@ from vehicle.studies.diagnosis.simulated_drives import RATE, drawn_road, drive
 CHANNELS = (*PHONE, *EIGHT)
 Z = [2, *range(3, 11)]
 """Rows of vertical accelerations."""
-SEED = 20260067
+SEED = 20260167
 
 
 class Makers:

@@ -29,7 +29,7 @@ from vehicle.studies.diagnosis.learned import Learned
 from vehicle.studies.diagnosis.record_gain import GainTest
 from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, Drives, simulated_drives
 
-DRIVES, MORE_DRIVES = 960, 1440
+DRIVES, MORE_DRIVES = 1200, 1600
 """Simulated drives for a known speed, and for a range of speeds."""
 
 SPEED_RATIO = 1.12
