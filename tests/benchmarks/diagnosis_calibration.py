@@ -216,12 +216,13 @@ def outside(diagnostics, car, count):
 
 
 def by_mujoco(diagnostics, car, count):
-    rng = np.random.default_rng(SEED + 2)
+    # These 45 drives are those that were seen while the prior was chosen; all other seeds are fresh.
+    rng = np.random.default_rng(20260065)
     scores = {name: Score(f"MuJoCo, {name}") for name in diagnostics}
     for number in range(count):
         made, truth = other_car(car, rng)
         letter = "ABCD"[number % 4]
-        ridden = road(letter, 3.6 * SPEED, duration=SECONDS + 4.0, seed=700 + number, period="record")
+        ridden = road(letter, 3.6 * SPEED, duration=SECONDS + 4.0, seed=500 + number, period="record")
         run = made.run(ridden, channels=(*PHONE, *EIGHT))
         samples = np.array([run[name] for name in (*PHONE, *EIGHT)])[:, run.time >= 3.5]
         for name, found in judged(diagnostics, samples, 1.0 / (run.time[1] - run.time[0])).items():

@@ -35,8 +35,8 @@ DRIVES, MORE_DRIVES = 1200, 1600
 SPEED_RATIO = 1.12
 """Largest ratio of the speeds that cars with one rolling speed of the tyres are used for."""
 
-USUAL, UNLIKE, WIDENING = 1.5, 3.5, 0.5
-"""Unlikeness of a record, see `Learned`: up to the first (94 % of the drives) intervals are not widened, beyond the
+USUAL, UNLIKE, WIDENING = 1.0, 3.5, 0.5
+"""Unlikeness of a record, see `Learned`: up to the first (84 % of the drives) intervals are not widened, beyond the
 second (0.3 %) the record is refused, and between both intervals grow by exp(WIDENING) a unit."""
 
 SURE_GAIN, WRONG_GAIN, GAIN_WIDENING = 2.0, 2.6, 1.0
@@ -245,7 +245,7 @@ def diagnose_car(
         free: points with a device in any direction, for example ("seat_rail",); x, y and z are axes of the device,
             and the record contains gravity.
         parts: groups of unknowns for the table, of `GROUPS`.
-        count: number of simulated drives; by default 960, and 1440 for a range of speeds.
+        count: number of simulated drives; by default 1200, and 1600 for a range of speeds.
         seed: seed of the simulated drives.
         progress: called with the share that is done.
 
