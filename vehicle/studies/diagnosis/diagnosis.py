@@ -29,7 +29,7 @@ from vehicle.studies.diagnosis.learned import Learned
 from vehicle.studies.diagnosis.record_gain import GainTest
 from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, Drives, simulated_drives
 
-DRIVES, MORE_DRIVES = 1200, 1600
+DRIVES, MORE_DRIVES = 1200, 1440
 """Simulated drives for a known speed, and for a range of speeds."""
 
 SPEED_RATIO = 1.12
@@ -245,7 +245,7 @@ def diagnose_car(
         free: points with a device in any direction, for example ("seat_rail",); x, y and z are axes of the device,
             and the record contains gravity.
         parts: groups of unknowns for the table, of `GROUPS`.
-        count: number of simulated drives; by default 1200, and 1600 for a range of speeds.
+        count: number of simulated drives; by default 1200, and 1440 for a range of speeds.
         seed: seed of the simulated drives.
         progress: called with the share that is done.
 
