@@ -8,6 +8,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.laws.elastomer import Maxwell
 from vehicle.model.parameters.air_spring import ATMOSPHERE, GAMMA, air_stiffness
 from vehicle.runs.car import Car
+from vehicle.runs.car.air_notice import air_travel, gas_error
 from vehicle.runs.car.road import Road
 
 AREA, VOLUME, SLOPE, TIME, MASS = 0.01, 0.002, 0.02, 0.5, 150.0
@@ -144,3 +145,31 @@ def test_wrong_air_springs_are_refused(tmp_path):
     air = {"air_area": AREA, "air_volume": VOLUME, "air_exchange_time": TIME}
     with pytest.raises(ConfigurationError, match="the body is flexible at this point"):
         Car.load("focus_road", {f"engine.bushings.linear_mount.{key}": value for key, value in air.items()}).static  # noqa: B018
+
+
+def test_beyond_the_linear_range_a_run_has_a_notice(car):
+    """Error of the adiabatic gas, (V/(V - A x))^gamma by hand, and the travel of a sine from its force."""
+    law = next(link.law for link in car.vehicle.composition.connections if link.name == "box_air")
+    load, x = MASS * car.vehicle.gravity, 0.02
+    absolute = ATMOSPHERE + load / AREA
+    volumes = VOLUME - AREA * np.array([x, -x]) - 0.5 * SLOPE * x**2
+    force = (absolute * (VOLUME / volumes) ** 1.4 - ATMOSPHERE) * (AREA + SLOPE * np.array([x, -x]))
+    linear = (1.4 * absolute * AREA**2 / VOLUME + load / AREA * SLOPE) * np.array([x, -x])
+    validated(
+        "Bushings, springs and stops", "air spring at 20 mm: error of the change of its force by the linear law",
+        [gas_error(law, load, end) for end in (x, -x)], (force - load) / linear - 1.0, rel=1e-9,
+        source="closed form: p V^1.4 = const",
+    )  # fmt: skip
+    time = np.arange(8000) / 1e3
+    wave = np.exp(2j * np.pi * 1.5 * time)
+    static, branch = air_stiffness(load, AREA, VOLUME, SLOPE)
+    gas = Maxwell(stiffness=BELLOWS + static, branch_stiffness=branch, branch_damping=branch * TIME)
+    stiffness = gas.complex_stiffness(3.0 * np.pi) + 3j * np.pi * DAMPING
+    travel = air_travel(law, load, (x * wave * stiffness).imag, 1e-3)
+    # Settled after 10 tau; the damper is a backward difference, 1e-3 of the stiffness late by half a sample.
+    assert travel[5000:] == pytest.approx(x * wave.imag[5000:], abs=2e-3 * x)
+    smooth, rough = (car.run(Road(road, 60, duration=5, period="record"), "reduced") for road in ("A", "D"))
+    assert not [text for text in smooth.recording.statistics.notices if "gas is adiabatic" in text]
+    (text,) = [text for text in rough.recording.statistics.notices if "gas is adiabatic" in text]
+    assert text.startswith("box.bushings.box_air moves from -")
+    assert "box_air_force_z" not in rough.channels

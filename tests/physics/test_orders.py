@@ -186,6 +186,8 @@ def test_steady_points_of_the_shaker_are_those_of_orders(capsys):
     assert capsys.readouterr().out == expected and "2 runs of 4 s" in expected
     assert main(["shaker", *words, "--input", "low.csv"]) == 2
     assert re.search("--rpm A:B:STEP: .*remove --input", capsys.readouterr().err)
+    assert main(["shaker", *words, "--law-band"]) == 2
+    assert "--law-band: belongs to a run of a whole road, but --rpm A:B:STEP runs many" in capsys.readouterr().err
 
 
 def test_the_shaker_runs_up(tmp_path, capsys):

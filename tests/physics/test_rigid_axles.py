@@ -161,8 +161,9 @@ def test_friction_of_the_leaves_by_energy():
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_both_engines_and_energy(axles, name):
+def test_both_engines_and_energy(axles):
+    """The axle with air springs; rides on leaf springs: `test_light_truck.py`."""
+    name = "air_axle"
     road = Road("B", speed=60, duration=5, period="record")
     stepped, run = (axles[name].run(road, engine=engine) for engine in ("mujoco", "reduced"))
     channels = ("seat rail z", "knuckle rr z")

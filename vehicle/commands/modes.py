@@ -109,6 +109,7 @@ def parser() -> Parser:
 def _job(settings: ModesSettings, console: Console) -> None:
     _check_film(settings)
     from vehicle.runs.car import Car
+    from vehicle.runs.car.axle import mass_and_cog
     from vehicle.runs.car.motion_figures import damper_notes, motion_figures
 
     if settings.uff is not None and settings.uff.exists():
@@ -141,7 +142,7 @@ def _job(settings: ModesSettings, console: Console) -> None:
         write_whole(settings.uff, lambda path: write_modes(path, car, settings.damper))
     if settings.animate is not None:
         table["film"] = _film(settings, settings.animate, car, console)
-    console.result(table, report(table, figures))
+    console.result(table, report(table, figures, mass_and_cog(car)[0]))
 
 
 def _decoupling(settings: ModesSettings, name: str, car: Any, *, as_json: bool) -> str:
@@ -223,8 +224,8 @@ def modes_table(car: Any, damper: str, figures: Sequence[MotionFigure]) -> dict[
     }
 
 
-def report(table: dict[str, Any], figures: Sequence[MotionFigure]) -> str:
-    """Return the modes as the printed table: frequency, damping ratio, motion, share of the kinetic energy."""
+def report(table: dict[str, Any], figures: Sequence[MotionFigure], mass: float) -> str:
+    """Return the modes of a car of a mass [kg] as the printed table: frequency, damping ratio, motion, energy share."""
     from vehicle.runs.car.car_text import figures_table
 
     width = max((len(mode["description"]) for mode in table["modes"]), default=0)
@@ -243,7 +244,7 @@ def report(table: dict[str, Any], figures: Sequence[MotionFigure]) -> str:
         lines.append(
             f"this car {fault}: {', '.join(table['growing'])} grows by itself (negative damping in the table above)"
         )
-    lines += [str(figures_table(figures))] if figures else []
+    lines += [str(figures_table(figures, mass))] if figures else []
     lines += [f"note     {text}" for text in table["notices"]]
     free = table["free_body"]
     if free["frequency_hz"]:

@@ -198,6 +198,7 @@ def _job(settings: NewSettings, console: Console) -> None:
 
 def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
     """Return the stated numbers with the values of the car, the others with their origin, and its headline figures."""
+    from vehicle.runs.car.axle import mass_and_cog
     from vehicle.runs.car.car_text import figures_table
     from vehicle.studies.design.new_car import RIDE_ORDER
 
@@ -211,7 +212,8 @@ def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
         else:
             lines.append(f"{name:<34}{check.stated:>10.6g}{check.value:>12.6g}{100.0 * check.deviation:z10.3f} %")
     others += [f"{name:<56}  {origin}" for name, origin in result.parts]
-    lines += ["", *others, "", str(figures_table(figures)), "", *(f"note: {text}" for text in _notes(result))]
+    table = figures_table(figures, mass_and_cog(result.car)[0])
+    lines += ["", *others, "", str(table), "", *(f"note: {text}" for text in _notes(result))]
     lines.append(f"run it: python -m vehicle shaker --vehicle {file} --road B --speed 80")
     return "\n".join(lines)
 

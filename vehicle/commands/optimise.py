@@ -10,6 +10,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.input_options import inputs_of, signal_options
 from vehicle.commands.options import (
+    acceleration_options,
     car_of,
     command_parser,
     destination_of,
@@ -34,7 +35,7 @@ def parser() -> Parser:
         "optimise", "Search for parameters with the best compromise of comfort, tyre load and travel."
     )
     signal_options(parser, several=True)
-    vehicle_options(parser)
+    acceleration_options(vehicle_options(parser))
     search = parser.add_argument_group("the search")
     search.add_argument(
         "--vary",

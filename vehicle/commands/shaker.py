@@ -67,7 +67,7 @@ def parser() -> Parser:
     output_options(parser, None, default="runs/<input stem> or runs/road_C_80")
     car = vehicle_options(parser)
     acceleration_options(car)
-    setting_options(car, ShakerSettings, "controller", "trust")
+    setting_options(car, ShakerSettings, "law_band", "controller", "trust")
     setting_options(
         parser, ShakerSettings, "engine", "stated_errors", "skip", "timestep", "time_format", "channels", "formats"
     )
@@ -99,6 +99,7 @@ def _steady_points(settings: ShakerSettings, engine_given: bool, speed: float | 
     settings.require_forces()
     if isinstance(settings.source, PlateSettings):
         raise ConfigurationError("--rpm A:B:STEP: runs on a road at steady speeds; remove --input")
+    settings.require_no_others("--rpm A:B:STEP runs many steady speeds", "rpm", "duration", "engine")
     car, destination = settings.car, settings.destination
     road, file = str(settings.source.road), destination.output
     arguments = ["--rpm", str(settings.rpm), "--road", road]

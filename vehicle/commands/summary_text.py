@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.digits import number
 from vehicle.names import side_of, slip_words
+from vehicle.signals.records.law_band_summary import band_sentence
 
 if TYPE_CHECKING:
     from vehicle.signals.records.run_summary import Peaks, RunSummary, SolverSummary
@@ -36,6 +37,7 @@ def summary_text(summary: RunSummary) -> str:
         *_obstacle(summary),
         *_forces(summary),
         *_dampers(summary),
+        *([f"band        {text}"] if (text := band_sentence(summary)) else []),
     ]
     for wheel, plate, peaks in _peaks(summary) if summary.frf is not None else ():
         for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z", "engine_acc_z"):

@@ -11,6 +11,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.input_options import inputs_of, signal_options
 from vehicle.commands.options import (
+    acceleration_options,
     car_of,
     command_parser,
     destination_of,
@@ -72,7 +73,7 @@ def parser() -> Parser:
         "default: all stiffnesses, dampings, friction forces and masses; restrict with --vary, for example --vary "
         "front.damper; coordinates are shifted by ±D mm (default 10), for example 20%%,5mm",
     )
-    vehicle_options(parser)
+    acceleration_options(vehicle_options(parser))
     setting_options(parser, SweepSettings, "estimate", "measure", "engine", "skip")
     setting_options(
         parser,

@@ -112,6 +112,7 @@ def test_two_states_are_followed_from_below_and_from_above():
     level = np.geomspace(1e-4, 6e-4, 10)[6:9]
     found = car.levels(frequency=4.87, level=level)
     assert found.certificate == ["no"] and found.several.tolist() == [[False, False, True]]
+    assert "at 1 of 3 points (4.87 to 4.87 Hz) the car has two periodic states" in "; ".join(found.notices)
     below, above = found.branches[:, 0, 0]
     np.testing.assert_allclose(below[:2], above[:2], rtol=1e-5)
     assert abs(above[2] / below[2] - 1.0) > 1e-3

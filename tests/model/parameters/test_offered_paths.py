@@ -15,7 +15,8 @@ def plain(value):
     return list(value) if isinstance(value, tuple) else value
 
 
-@pytest.mark.parametrize("name", shipped_cars())
+# All paths of these two are paths of another car.
+@pytest.mark.parametrize("name", sorted({*shipped_cars()} - {"focus_measured_roll", "focus_road"}))
 def test_every_offered_path_is_read_and_set(name):
     car = Car.load(name)
     assert car.folder is not None
@@ -24,7 +25,8 @@ def test_every_offered_path_is_read_and_set(name):
     sliders = {path: setting.value for path, setting in settings(car).items()}
     assert len(listed) > 150 and len(sliders) > 200
     # Components of vectors that stand at their default, zeros, have paths too: 117 sliders of the sedan had none.
-    assert "engine.bushings.hydromount.friction_force.z" in sliders
+    mounts = car.vehicle.table["engine"]["bushings"]
+    assert all(f"engine.bushings.{mount}.friction_force.z" in sliders for mount in mounts)
     for path, value in {**listed, **sliders}.items():
         assert plain(parameter_at(car.vehicle, path, None, lambda: optional).value) == plain(value), path
     for offered in (listed, sliders):

@@ -70,3 +70,23 @@ def test_a_bushing_has_a_range():
     tested = Car.load("focus_road", {"front.bushings.suspension_mount.tested.frequency": [1.0, 100.0]})
     laws: dict[str, Any] = {link.name: link.law for link in tested.vehicle.composition.connections}
     assert laws["suspension_mount_fr"].tested.frequency == (1.0, 100.0)
+
+
+BAND = {"velocity": [-0.5, -0.1, 0.1, 0.5], "soft": [-60.0, -30.0, -30.0, -80.0], "firm": [50.0, 20.0, 20.0, 50.0]}
+
+
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"soft": [-60.0, -30.0, -30.0]}, "found 4 velocities, 3 changes at the soft and 4 .* give as many of each"),
+    ({"velocity": [-0.1, -0.5, 0.1, 0.5]}, "must be ascending, .*; sort them"),
+    ({"velocity": [-0.5, -0.5, 0.1, 0.5]}, "must be ascending"),
+    ({"velocity": [-0.5, -0.1, 0.0, 0.5]}, "without zero"),
+    ({"velocity": [-0.5, 0.1, 0.2, 0.5]}, "as many below as above zero"),
+    ({"velocity": [-0.5, -0.1, 0.1, float("nan")]}, "found nan m/s, must be a finite number"),
+    ({"firm": [50.0, 20.0, float("inf"), 50.0]}, "found inf N, must be a finite number"),
+    ({"soft": BAND["firm"], "firm": BAND["soft"]}, "band_soft: found 50 N at -0.5 m/s, must be at most 0: .* exchange"),
+    ({"firm": [50.0, -20.0, 20.0, 50.0]}, "band_firm: found -20 N at -0.1 m/s, must be at least 0: .*; subtract"),
+    ({"soft": -60.0}, "must be a list, not -60.0"),
+])  # fmt: skip
+def test_a_wrong_band_is_refused(changes, said):
+    with pytest.raises(ConfigurationError, match=f"front.damper.tested.*{said}"):
+        Car.load("focus_road", {f"front.damper.tested.band_{name}": each for name, each in (BAND | changes).items()})

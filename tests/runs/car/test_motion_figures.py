@@ -84,7 +84,7 @@ def test_all_commands_say_the_same(cars, made, name, capsys, monkeypatch):
         for figure in listed["figures"]:
             assert all(found[mode["frequency_hz"]] == mode["description"] for mode in figure["modes"])
     page = str(car_section(car))
-    for row in figures_table(figures).rows:
+    for row in figures_table(figures, data.mass_kg).rows:
         assert all(cell in page for cell in row)
     if name in made:
         printed = json.loads(made[name][1])

@@ -28,6 +28,8 @@ BRAKING = "anti-dive (front) or anti-lift (rear), braking [%]"
 UNUSUAL = {
     "sedan": set(),
     "sedan_steering": set(),
+    # The ranges are those of cars and vans.
+    "light_truck": {("", "mass [kg]")},
     "focus_road": FOCUS_ROAD,
     "focus_road_seated": FOCUS_ROAD,
     "focus": FOCUS,

@@ -113,10 +113,13 @@ def test_a_run_whose_channel_rests_does_not_hide_a_miss(on_road):
     ratio = figure("ratio", channels=("seat_rail_acc_z",), over=("seat_rail_acc_y",), unit="-", at_most=1e-3)
     summary = SimpleNamespace(input=SimpleNamespace(file="", road=None))
     runs: list[Any] = [
-        SimpleNamespace(name=name, label="sedan", summary=summary, value_of=partial(value_of, ride=histories))
-        for name, histories in (("rest", rest), ("ride", ride))
-    ]
-    for order in (runs, runs[::-1]):
+        SimpleNamespace(name=name, label="sedan", summary=summary, value_of=partial(value_of, ride=histories),
+                        runs=histories)
+        for name, histories in (("rest", rest), ("ride", ride), ("event", replace(ride, random=False)))
+    ]  # fmt: skip
+    peak = {"peak": figure("peak", channels=("seat_rail_acc_z",))}
+    assert [verdict(peak, [run])["sedan"]["peak"].unknown for run in runs] == [True, True, False]
+    for order in (runs[:2], runs[1::-1]):
         rated = verdict({"loud": ratio}, order)["sedan"]["loud"]
         assert (rated.state, rated.run, rated.runs) == (MISSED, "ride", 2)
 
@@ -191,6 +194,10 @@ def test_sentence():
     rated = dict(zip(figures, (Rated(state=state) for state in (MET, MISSED, MISSED, NOT_RUN)), strict=True))
     assert sentence(figures, "sedan", rated) == "sedan meets 1 of 3 targets and misses two and three; four had no run."
     assert sentence(figures, "sedan", dict.fromkeys(figures, Rated())).startswith("No target was checked for sedan")
+    rated["one"] = replace(rated["one"], unknown=True)
+    assert "on another road of this kind one may differ by an amount that is not known" in sentence(
+        figures, "sedan", rated
+    )
 
 
 FAULTS = {

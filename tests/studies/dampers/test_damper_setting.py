@@ -8,10 +8,12 @@ from tests.benchmarks.known_dampers import FINE, random_motion
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.signals.records.choice import Choice
-from vehicle.studies.dampers.conditions import with_setting
+from vehicle.studies.dampers.conditions import fitted_beyond_lag, with_setting
+from vehicle.studies.dampers.damper_fit import DamperFit, fit_law
 from vehicle.studies.dampers.damper_force import Motion, force_and_slopes
 from vehicle.studies.dampers.damper_law import DamperLaw
 from vehicle.studies.dampers.damper_setting import Setting
+from vehicle.studies.dampers.damper_starts import first_start
 from vehicle.studies.dampers.damper_test import read_test
 from vehicle.studies.dampers.fitted_damper import fit_damper
 from vehicle.studies.dampers.over_condition import control_lines, setting_values
@@ -104,19 +106,47 @@ def test_a_switched_damper_gives_its_law_and_its_switching_time(tmp_path):
         assert damping == pytest.approx(np.sum(force * v) / np.sum(v**2), rel=0.03)
 
 
+def after_a_switch(path, duration, lag):
+    """A record of 900 to 1800 N s/m that begins 2 ms after a switch, while the damper follows the current before."""
+    time, current = switched(duration)
+    _, x, v = random_motion(duration, 0.008, 1)
+    each = slice(None, None, round(1.0 / RATE / FINE))
+    current = np.interp(time, time[each], current[each])
+    # Exact decay of the lag in a fine step, under the mean current of the step.
+    fade = np.exp(-FINE / lag)
+    means = 0.5 * (current[1:] + current[:-1])
+    y = np.concatenate([[0.0], scipy.signal.lfilter([1.0 - fade], [1.0, -fade], means)])
+    table = np.column_stack([time, 1e3 * x, 1e3 * v, 900.0 * (1.0 + y) * v - 80.0, current, 20.0 + time])[each]
+    begin = 200 + np.flatnonzero(np.diff(table[200:, 4]))[0] + 3
+    np.savetxt(path, table[begin:], delimiter=",", header=HEAD, comments="", fmt="%.9g")
+    return with_setting([read_test(path, Choice(), conditions={"current": "channel:current"})])
+
+
+def linear_fit(tests):
+    """Fit of a linear soft and firm law, as a choice of laws with this law alone."""
+    law = DamperLaw(setting="lag")
+    return DamperFit(law=law, parameters=fit_law(tests, law, first_start(law, tests), tolerance=1e-10)), []
+
+
+def lag_of(fit):
+    """Fitted lag [s]."""
+    return float(fit.parameters[list(fit.law.parameters).index("lag")])
+
+
 def test_what_was_before_the_record_does_not_count(tmp_path):
-    """A record that begins 2 ms after a switch, while the damper still follows the current before."""
-    record(tmp_path / "switched.csv", 1.5)
-    table = np.loadtxt(tmp_path / "switched.csv", delimiter=",", skiprows=1)
-    begin = 200 + np.flatnonzero(np.diff(table[200:, 4]))[0] + 2
-    np.savetxt(tmp_path / "cut.csv", table[begin:], delimiter=",", header=HEAD, comments="", fmt="%.7g")
-    (test,) = with_setting([read_test(tmp_path / "cut.csv", Choice(), conditions={"current": "channel:current"})])
-    assert test.setting is not None
-    shares = test.setting.shares(LAG, 0.0, 1.0)[0]
-    time, current = table[:, 0], table[:, 4]
-    exact = Setting(name="current", time=time, values=current, lowest=0.0, highest=1.0).shares(LAG, 0.0, 1.0)[0][begin:]
-    off = np.abs(shares - exact)
-    assert off.max() > 0.5 and off[test.settled].max() < 1e-4
+    lag = 0.06
+    tests = after_a_switch(tmp_path / "cut.csv", 1.2, lag)
+    whole = lag_of(linear_fit(tests)[0])
+    (test,), (fit, _) = fitted_beyond_lag(tests, linear_fit)
+    found = lag_of(fit)
+    validated(SUBJECT, "damper, lag of 60 ms, record that begins just after a switch: lag", found, lag, rel=5e-3,
+              unit="s", source="second derivation: exact decay of the lag in steps of 0.1 ms")  # fmt: skip
+    assert abs(whole / lag - 1.0) > 0.05
+    assert test.time[test.settled][0] - test.time[0] == pytest.approx(5.0 * lag, rel=0.1)
+    assert test.notices[-1] == "the first 0.3 s are not fitted: the damper follows current with a lag of 0.06 s"
+    tests = after_a_switch(tmp_path / "short.csv", 0.7, lag)
+    (test,), _ = fitted_beyond_lag(tests, linear_fit)
+    assert test.notices[-1].endswith("what current was before the record may still count: record longer")
 
 
 def test_two_changing_conditions_are_refused_and_noise_is_a_constant(tmp_path):

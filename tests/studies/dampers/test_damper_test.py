@@ -93,3 +93,23 @@ def test_conditions(tmp_path):
                         ({"pattern": "*Hz{current}A"}, "does not match a; ")):  # fmt: skip
         with pytest.raises(ConfigurationError, match=said):
             read_test(path, **wrong)
+
+
+@pytest.mark.parametrize(("wrong", "said"), [
+    ({"conditions": {"current": "channel:force"}}, "channel 3 'force' contains the force of this test; choose the"),
+    ({"conditions": {"current": "channel:1"}}, "channel 1 'displacement' contains the displacement of this test"),
+    ({"conditions": {"current": "channel:copy"}}, "channel 5 'copy' contains the velocity of this test"),  # other unit
+    ({"conditions": {"current": "channel:I", "clicks": "channel:4"}}, "channel 4 'I' contains the current of this"),
+    ({"conditions": {"force": "channel:I"}}, "force is a measured quantity, not a condition of the test; name a"),
+    ({"conditions": {"time": "3"}}, "time is a measured quantity"),
+    ({"pattern": "a{velocity}"}, "velocity is a measured quantity"),
+    ({"pattern": "a{clicks}", "conditions": {"clicks": "3"}}, "gives the condition clicks a second time"),
+])  # fmt: skip
+def test_a_measured_quantity_is_no_condition(tmp_path, wrong, said):
+    plain = write(tmp_path / "plain.csv")
+    head, table = f"{HEAD},copy [m/s]", np.loadtxt(plain, delimiter=",", skiprows=1)
+    table = np.column_stack([table, 1e-3 * table[:, 2]])
+    np.savetxt(tmp_path / "a7.csv", table, delimiter=",", header=head, comments="", fmt="%.9g")
+    choice = Choice(channels={"velocity": "velocity"})
+    with pytest.raises(ConfigurationError, match=said):
+        read_test(tmp_path / "a7.csv", choice, **wrong)

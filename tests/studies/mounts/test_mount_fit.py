@@ -150,6 +150,7 @@ def test_units_and_order_of_the_columns_are_free(tmp_path):
         (HEAD.replace("N/mm", "N/m") + ROWS, r"a\.csv:2: stiffness: found 301 N/m, .*3000 to 1e"),
         (HEAD.replace("[mm]", "[m]") + ROWS, r"amplitude: found 0\.1 m, .*1e-07 to 0\.02 m"),
         (HEAD + "".join(ROWS.splitlines(keepends=True)[:6]), r"8 rows and 4 frequencies"),
+        (HEAD + "".join(f"{f},{a},300,{f}\n" for a in (0.1, 1.0) for f in range(1, 6)), "'frequency' and 'loss_angle'"),
     ],
 )
 def test_a_bad_table_is_refused_with_the_remedy(tmp_path, text, said):

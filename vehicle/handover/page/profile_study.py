@@ -6,7 +6,6 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.errors import ConfigurationError
 from vehicle.handover.page.shaker_settings import ShakerSettings
 from vehicle.names import AXES
 from vehicle.runs.output.folder import output_folder, write_text
@@ -42,18 +41,7 @@ def profile_study(settings: ShakerSettings, listener: Listener, command: str) ->
     from vehicle.runs.car.road import road_of
     from vehicle.runs.report.general_notices import without_general
 
-    parts = {
-        "--video": settings.film.video,
-        "--measured": settings.measured.measured,
-        "--report": settings.report.report,
-    }
-    flags = [flag for flag, value in parts.items() if value is not None]
-    flags += [settings.declared()[name]["flag"] for name in settings.given(without=("engine", "skip"))]
-    for flag in flags:
-        raise ConfigurationError(
-            f"{flag}: belongs to a run of a whole road, but --precision runs pieces of a measured profile; leave one "
-            "of them out"
-        )
+    settings.require_no_others("--precision runs pieces of a measured profile", "engine", "skip")
     assert isinstance(settings.source, DriveInput)
     choice, road = settings.car, road_of(settings.source)
     car = Car.load(choice.vehicle, choice.overrides)

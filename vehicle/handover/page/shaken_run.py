@@ -109,6 +109,7 @@ def _shake(
 
     from vehicle.runs.car import Car
     from vehicle.runs.output.run_files import save_last_state, write_run
+    from vehicle.runs.output.run_law_band import law_band_values
     from vehicle.runs.output.run_size import run_size
 
     car = Car.load(choice.vehicle, choice.overrides)
@@ -131,6 +132,7 @@ def _shake(
         measured = settings.measured.read(channels or car.vehicle.channels, asked)
     # A car that cannot be run is refused before anything is written.
     car.check(engine)
+    edges = car.law_band() if settings.law_band else ()
     controls = [damper.law.controlled for damper in car.vehicle.composition.dampers]
     for native in dict.fromkeys(control.fmu for control in controls if control and control.law == FMU):
         listener.say(f"controller  {native} runs as native code with all your rights")
@@ -147,6 +149,7 @@ def _shake(
                 signal, engine, progress=progress, channels=channels, skip=skip, stated_errors=settings.stated_errors
             )
             run = replace(run, road=description)
+            band, warnings = law_band_values(run, edges, stated_errors=settings.stated_errors)
         except SimulationError as error:
             raise save_last_state(error, output) from None
         summary = write_run(
@@ -158,6 +161,8 @@ def _shake(
             figures=settings.figures,
             video=None if video is None else (video, lambda path: _film(path, settings, run, signal, drive, listener)),
             measured=measured,
+            law_band=band,
+            notices=warnings,
             report=None
             if page is None
             else (page, lambda path: _report(path, settings, run, folder, output, listener)),

@@ -37,6 +37,12 @@ class ShakerSettings(Settings):
     report: ReportChoice = part(ReportChoice)
     engine: str = engine_setting("mujoco")
     stated_errors: bool = stated_errors_setting()
+    law_band: bool = setting(
+        "also run the car with the softest and with the firmest dampers that their tests leave open (the band of "
+        "fit-damper), and state what comfort and stick do between them; three runs",
+        False,
+        action="store_true",
+    )
     skip: float | None = skip_setting()
     rpm: str | None = setting(
         "speed of the crankshaft [1/min]; A:B is a run-up over --duration; A:B:STEP are steady speeds, a "
@@ -105,6 +111,26 @@ class ShakerSettings(Settings):
                 "--rpm has no effect with --no-forces, which leaves out the forces of the crankshaft; leave "
                 "out one of them"
             )
+
+    def require_no_others(self, why: str, *names: str) -> None:
+        """Check that no settings of a single run are given but some.
+
+        Args:
+            why: reason, after "belongs to a run of a whole road, but".
+            names: names of the settings that have an effect.
+
+        Raises:
+            ConfigurationError: the first other setting that is given.
+        """
+        parts = {
+            "--video": self.film.video,
+            "--measured": self.measured.measured,
+            "--report": self.report.report,
+        }
+        flags = [flag for flag, value in parts.items() if value is not None]
+        flags += [self.declared()[name]["flag"] for name in self.given(without=names)]
+        for flag in flags:
+            raise ConfigurationError(f"{flag}: belongs to a run of a whole road, but {why}; leave one of them out")
 
     def chosen_engine(self) -> tuple[str, str]:
         """Return the engine, and the reason if it differs from `engine`.

@@ -60,16 +60,16 @@ class TestedRange:
     )  # fmt: skip
 
     band_velocity: Range = quantity(
-        "m/s", "ascending velocities of the band of the force of a damper, without zero, as many on both sides; "
+        "m/s", "ascending velocities of the band of the force of a damper, without zero, as many below as above zero; "
         "`Car.law_band` runs its edges", at_least=-20.0, at_most=20.0, default=(),
     )  # fmt: skip
     band_soft: Range = quantity(
-        "N", "lowest force of the band in the direction of the velocity, minus the force of the law", at_least=-1e6,
-        at_most=0.0, default=(),
+        "N", "lowest force of the band minus the force of the law, in the direction of the velocity: at most zero, one "
+        "value for each of `band_velocity`", at_least=-1e6, at_most=1e6, default=(),
     )  # fmt: skip
     band_firm: Range = quantity(
-        "N", "highest force of the band in the direction of the velocity, minus the force of the law", at_least=0.0,
-        at_most=1e6, default=(),
+        "N", "highest force of the band minus the force of the law, in the direction of the velocity: at least zero, "
+        "one value for each of `band_velocity`", at_least=-1e6, at_most=1e6, default=(),
     )  # fmt: skip
 
     def __post_init__(self) -> None:
@@ -87,8 +87,16 @@ class TestedRange:
         ):
             raise ConfigurationError(
                 f"TestedRange.band_velocity: found {list(velocity)}, must be ascending, without zero, and as many "
-                "below as above zero"
+                "below as above zero; sort them, each with its two changes"
             )
+        for name, sign, limit in (("band_soft", 1.0, "at most"), ("band_firm", -1.0, "at least")):
+            wrong = next((at for at, change in enumerate(getattr(self, name)) if sign * change > 0.0), None)
+            if wrong is not None:
+                raise ConfigurationError(
+                    f"TestedRange.{name}: found {getattr(self, name)[wrong]:g} N at {velocity[wrong]:g} m/s, must be "
+                    f"{limit} 0: band_soft and band_firm are changes of the force of the law in the direction of the "
+                    "velocity; subtract the force of the law, or exchange both edges"
+                )
         for entry in fields(self):
             values = getattr(self, entry.name)
             if values is not None and not entry.name.startswith(BAND) and values[0] > values[1]:

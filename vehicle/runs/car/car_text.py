@@ -60,7 +60,7 @@ def car_tables(data: CarData) -> list[TextTable]:
     ranges, its axles, its headline figures.
     """
     steady = [] if data.steady is None else [_steady(data.steady)]
-    return [_whole_car(data), *steady, _usual(data), _axles(data), figures_table(data.figures)]
+    return [_whole_car(data), *steady, _usual(data), _axles(data), figures_table(data.figures, data.mass_kg)]
 
 
 def car_text(data: CarData) -> str:
@@ -162,8 +162,8 @@ STEADY_NOTE = (
 )
 
 
-def figures_table(figures: Sequence[MotionFigure]) -> TextTable:
-    """Return the table of headline figures, with the modes that share their motions."""
+def figures_table(figures: Sequence[MotionFigure], mass: float) -> TextTable:
+    """Return the table of headline figures of a car of a mass [kg], with the modes that share their motions."""
     by_state = {(figure.motion, figure.dampers): figure for figure in figures}
     motions, states = (tuple(dict.fromkeys(key)) for key in zip(*by_state, strict=True))
     rows = []
@@ -171,10 +171,10 @@ def figures_table(figures: Sequence[MotionFigure]) -> TextTable:
         cells = []
         for state in states:
             figure = by_state[motion, state]
-            frequency, ratio = motion_values(figure)
+            frequency, ratio = motion_values(figure, mass)
             modes = [f"{number(mode.frequency_hz, 2)} ({number(100.0 * mode.share)} %)" for mode in figure.modes]
             cells += [frequency.value_text, ratio.value_text, ", ".join(modes) or "-"]
-        rows.append((motion, *cells, usual_range(motion)))
+        rows.append((motion, *cells, usual_range(motion, mass)))
     heads = (
         ("sliding [Hz]", "damping at 0.1 m/s [%]") if state == "sliding" else ("stuck [Hz]", "damping [%]")
         for state in states

@@ -2,23 +2,47 @@
 
 The band is stored with the law (`tested.band_velocity`, `band_soft`, `band_firm`: changes of the force in its
 direction). At an edge, the friction limit takes the change at the lowest velocity of the band, the mean of both sides
-and at least to zero; the curve takes the rest, straight between the velocities and to zero at rest, as a table that
-does not fall with the velocity. Beyond the band the last slope continues.
+and at least to zero; the curve takes the rest, straight between the velocities, to zero at rest, and beyond the band
+with its last slope. The table of a curve does not fall with the velocity: where an edge would, its force is constant.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
+import scipy
 
 from vehicle.digits import rounded
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import damper_curve
+from vehicle.model.parameters.composition import PlacedDamper
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.tested_range import TestedRange
+from vehicle.names import SIDE_SIGN
 
 EDGES = ("soft", "firm")
 """Edges of a band."""
+
+
+def laws_by_path(dampers: Sequence[PlacedDamper]) -> dict[str, Damper]:
+    """Return the law of each table of a vehicle file, that of a side if one side has a table of its own.
+
+    Args:
+        dampers: dampers of a car; those of a path are right and left.
+    """
+    laws: dict[str, Damper] = {}
+    for path in dict.fromkeys(damper.path for damper in dampers):
+        both = [damper for damper in dampers if damper.path == path]
+        axle, _, name = path.rpartition(".")
+        alike = all(damper.tables == both[0].tables for damper in both)
+        paths = [path] * len(both) if alike else [f"{axle}.{side}.{name}" for side in SIDE_SIGN]
+        laws |= {each: damper.law for each, damper in zip(paths, both, strict=True)}
+    return laws
+
+
+def banded_laws(laws: Mapping[str, Damper]) -> dict[str, Damper]:
+    """Return the laws with a band."""
+    return {path: law for path, law in laws.items() if law.tested is not None and law.tested.band_velocity}
 
 
 def edge_overrides(
@@ -34,7 +58,7 @@ def edge_overrides(
     Raises:
         ConfigurationError: no damper has a band, or a damper with a band has a control or a function for its curve.
     """
-    banded = {path: law for path, law in dampers.items() if law.tested is not None and law.tested.band_velocity}
+    banded = banded_laws(dampers)
     if not banded:
         raise ConfigurationError(
             f"law band: none of the dampers {', '.join(dampers)} has a band; fit one with fit-damper and take over all "
@@ -68,10 +92,10 @@ def edge_of(
     remaining = np.sign(velocity) * (change - (friction - law.coulomb_friction))
     curve = damper_curve(law)
     # The change is straight through zero between the lowest velocities of both sides.
-    speeds = np.unique([*velocity, *curve.knots, 0.0])
-    shift = np.interp(speeds, [*velocity[velocity < 0.0], 0.0, *velocity[velocity > 0.0]],
-                      [*remaining[velocity < 0.0], 0.0, *remaining[velocity > 0.0]])  # fmt: skip
-    force = curve.force(speeds) + shift
+    middle, last = velocity.size // 2, 2.0 * float(np.max(np.abs([*velocity, *curve.knots])))
+    speeds = np.unique([-last, *velocity, *curve.knots, 0.0, last])  # a table continues with the slope of its ends
+    ends, changes = np.insert(velocity, middle, 0.0), np.insert(remaining, middle, 0.0)
+    force = curve.force(speeds) + scipy.interpolate.make_interp_spline(ends, changes, k=1)(speeds)
     # The curve of the vehicle file does not fall with the velocity.
     zero_at = int(np.searchsorted(speeds, 0.0))
     force[zero_at:] = np.maximum.accumulate(force[zero_at:])
@@ -93,6 +117,6 @@ class BandedCar:
             velocities: lowest and highest speed [m/s] with the band; at other speeds the force of the law remains.
         """
         car: Any = self
-        dampers = {damper.path: damper.law for damper in car.vehicle.composition.dampers}
+        dampers = laws_by_path(car.vehicle.composition.dampers)
         soft, firm = (car.with_(edge_overrides(dampers, edge, velocities)) for edge in EDGES)
         return soft, firm

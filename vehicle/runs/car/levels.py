@@ -180,6 +180,13 @@ class LevelMap(LevelStates):
             texts.append(
                 f"at {lifting} points a tyre would pull in place of lifting off; set one_sided = true for the tyres"
             )
+        if several := int(np.sum(self.several)):
+            low, high = self.frequency[self.several.any(axis=1)][[0, -1]]
+            texts.append(
+                f"at {several} of {self.several.size} points ({low:.3g} to {high:.3g} Hz) the car has two periodic "
+                "states, one reached from lower and one from higher levels: `branches` has the response of both, the "
+                "map shows one of them"
+            )
         for name, share in zip(self.channels, self.unresolved, strict=True):
             if (worst := float(np.nanmax(share, initial=0.0))) > UNRESOLVED:
                 texts.append(

@@ -12,6 +12,7 @@ from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress, simulate
 from vehicle.errors import ConfigurationError
 from vehicle.names import ENGINES
+from vehicle.runs.car.air_notice import air_notice, air_springs
 from vehicle.runs.car.grip_notice import grip_notice
 from vehicle.runs.car.record_rate_notice import record_rate_notice
 from vehicle.runs.car.run_up_notice import run_up_notice
@@ -60,6 +61,10 @@ def simulated_run(
     shown = {name: units[name] for name in names if name in units}
     computed = None if channels is None else [name for name in names if name not in shown]
     more = [name for name in names if name not in defaults and name not in shown]
+    air = [name for name in air_springs(car) if stated and name not in names]
+    if air:
+        # Their forces, for a notice on their travel.
+        computed, more = [*(defaults if computed is None else computed), *air], [*more, *air]
     loads = [name for name in more if name in car.vehicle.load_channels]
     require_samples(signal.duration * car.vehicle.solver.record_rate, len(names))
     reason = "asked for"
@@ -106,7 +111,10 @@ def _noted(
     """Return a recording with notices on forces and chosen channels, and the histories of forces, as in `names`."""
     composition = car.vehicle.composition
     notices = [*force_notices(composition.forces), *run_up_notice(car), *grip_notice(car, recording.channels)]
+    notices += air_notice(car, recording.channels)
     recording = with_notices(recording, [*notices, *record_rate_notice(recording, chosen or ())])
+    if unasked := {*air_springs(car)} - {*names}:
+        recording = recording.only([name for name in recording.channels if name not in unasked])
     if not shown:
         return recording
     channels = {**recording.channels, **force_histories(composition, shown, recording.time)}

@@ -24,6 +24,9 @@ GRAVITY = 9.81
 DEGREES = math.pi / 180.0
 """One degree [rad]."""
 
+MASS = "mass [kg]"
+"""Figure whose range is that of the vehicles of all other ranges."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class UsualFigure:
@@ -101,28 +104,33 @@ def usual_ranges() -> Mapping[str, Mapping[str, Any]]:
     return read_table(Path(__file__).parent / "usual_ranges.toml")
 
 
+def too_heavy(mass: float) -> bool:
+    """Return True if a vehicle of a mass [kg] is heavier than the cars and vans of the usual ranges."""
+    return bool(mass > usual_ranges()[MASS]["all"][1])
+
+
 def car_figures(data: Any) -> tuple[UsualFigure, ...]:
     """Return the figures of the whole car, from its `CarData`."""
     mean_track = float(np.mean([axle.track_m for axle in data.axles])) if data.axles else math.nan
     values = {
-        "mass [kg]": (data.mass_kg, 1),
+        MASS: (data.mass_kg, 1),
         "unsprung mass [% of the mass]": (100.0 * data.unsprung_kg / data.mass_kg, 1),
         "track over twice the CoG height": (mean_track / (2.0 * data.cog_height_m), 2),
     }
-    figures = [_ranged(name, "", *value) for name, value in values.items()]
+    figures = [_ranged(name, "", *value, data.mass_kg) for name, value in values.items()]
     if data.wheelbase_m is None:
         # Without a second axle on wheels the masses of the rear axle are not in the car.
         return (figures[0], figures[2])
-    figures.append(_ranged("wheelbase [mm]", "", 1e3 * data.wheelbase_m, 0))
-    figures.append(_ranged("load on the front axle [%]", "", 100.0 * data.front_share, 1))
+    figures.append(_ranged("wheelbase [mm]", "", 1e3 * data.wheelbase_m, 0, data.mass_kg))
+    figures.append(_ranged("load on the front axle [%]", "", 100.0 * data.front_share, 1, data.mass_kg))
     behind = data.cog_behind_front_m
     geometry = AxleGeometry(track=mean_track, front=behind, rear=data.wheelbase_m - behind)
     for (name, index), value in zip(
         SURVEY.items(), geometry.indices(data.mass_kg, data.inertia_kg_m2[:3]), strict=True
     ):
         source = "73 measured cars, NHTSA's inertial parameter database, SAE 1999-01-1336"
-        figures.append(UsualFigure(name=name, axle="", value=value, decimals=3, low=index.least, high=index.most,
-                              source=source))  # fmt: skip
+        low, high = (math.nan, math.nan) if too_heavy(data.mass_kg) else (index.least, index.most)
+        figures.append(UsualFigure(name=name, axle="", value=value, decimals=3, low=low, high=high, source=source))
     return tuple(figures)
 
 
@@ -132,9 +140,8 @@ def axle_figures(data: Any) -> tuple[tuple[UsualFigure, ...], ...]:
     for name, (value_of, decimals) in AXLE_FIGURES.items():
         values: list[float | None] = _of_the_car(data, name) or [value_of(axle) for axle in data.axles]
         if name not in _OF_THE_CAR or data.wheelbase_m is not None:
-            rows.append(
-                tuple(_ranged(name, axle, value, decimals) for axle, value in zip(data.axles, values, strict=True))
-            )
+            pairs = zip(data.axles, values, strict=True)
+            rows.append(tuple(_ranged(name, axle, value, decimals, data.mass_kg) for axle, value in pairs))
     return tuple(rows)
 
 
@@ -158,35 +165,47 @@ def _of_the_car(data: Any, name: str) -> list[float | None] | None:
     return [(data.support_percent(axle) or (math.nan, math.nan))[index - 2] for axle in data.axles]
 
 
-def motion_values(figure: MotionFigure) -> tuple[UsualFigure, UsualFigure]:
-    """Return frequency and damping ratio of a headline figure; they have usual ranges if the dampers slide."""
+def motion_values(figure: MotionFigure, mass: float) -> tuple[UsualFigure, UsualFigure]:
+    """Return frequency and damping ratio of a headline figure; they have usual ranges if the dampers slide.
+
+    Args:
+        figure: headline figure.
+        mass: mass of the car [kg].
+    """
     axle, hop, _ = figure.motion.rpartition(" wheel hop")
     name = "wheel hop" if hop else figure.motion
     damping = None if figure.damping_ratio is None else 100.0 * figure.damping_ratio
-    pair = _ranged(f"{name} [Hz]", axle, figure.frequency_hz, 2), _ranged(f"{name}, damping [%]", axle, damping, 1)
+    pair = (
+        _ranged(f"{name} [Hz]", axle, figure.frequency_hz, 2, mass),
+        _ranged(f"{name}, damping [%]", axle, damping, 1, mass),
+    )
     if figure.dampers == "sliding":
         return pair
     frequency, ratio = (dataclasses.replace(value, low=math.nan, high=math.nan) for value in pair)
     return frequency, ratio
 
 
-def usual_range(motion: str) -> str:
+def usual_range(motion: str, mass: float) -> str:
     """Return the usual ranges of a headline figure as text; see `motion_values`."""
     pair = motion_values(
-        MotionFigure(motion=motion, dampers="sliding", frequency_hz=None, damping_ratio=None, modes=())
+        MotionFigure(motion=motion, dampers="sliding", frequency_hz=None, damping_ratio=None, modes=()), mass
     )
     return "; ".join(figure.range_text for figure in pair)
 
 
 def usual_figures(data: Any) -> tuple[UsualFigure, ...]:
     """Return all figures of a car: those of the whole car, of its axles, and the headline figures."""
-    rows = (*axle_figures(data), *(motion_values(figure) for figure in data.figures if figure.dampers == "sliding"))
+    sliding = [figure for figure in data.figures if figure.dampers == "sliding"]
+    rows = (*axle_figures(data), *(motion_values(figure, data.mass_kg) for figure in sliding))
     return (*car_figures(data), *(figure for row in rows for figure in row))
 
 
-def _ranged(name: str, axle: AxleData | str, value: float | None, decimals: int) -> UsualFigure:
-    """Return a figure with its usual range; a range with `per` is in proportion to the load of the axle."""
-    entry = usual_ranges().get(name, {})
+def _ranged(name: str, axle: AxleData | str, value: float | None, decimals: int, mass: float) -> UsualFigure:
+    """Return a figure with its usual range; a range with `per` is in proportion to the load of the axle.
+
+    A vehicle that is too heavy by its `mass` [kg] has the range of its mass alone.
+    """
+    entry = {} if name != MASS and too_heavy(mass) else usual_ranges().get(name, {})
     low, high = entry.get("all", (math.nan, math.nan))
     if isinstance(axle, AxleData):
         low, high = entry.get("front" if axle.front else "rear", (low, high))

@@ -32,6 +32,7 @@ from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.formats import write_record
 from vehicle.signals.formats.frf_file import write_frf
 from vehicle.signals.formats.table import Record
+from vehicle.signals.records.law_band_summary import LawBandSummary
 from vehicle.signals.records.measured import Measured
 from vehicle.signals.records.run_frf import CHANNEL
 from vehicle.signals.records.run_summary import (
@@ -92,6 +93,8 @@ def write_run(
     engine_reason: str = "",
     video: tuple[Path, Callable[[Path], None]] | None = None,
     measured: Measured | None = None,
+    law_band: LawBandSummary | None = None,
+    notices: Sequence[str] = (),
     report: tuple[Path, Callable[[Path], None]] | None = None,
     command: str = "",
     tell: Callable[[RunSummary], None] | None = None,
@@ -106,6 +109,8 @@ def write_run(
         engine_reason: reason for the choice of the engine; by default that of the run.
         video: name of the film, or a path outside the folder, and the function that writes it.
         measured: measurement to compare with the run.
+        law_band: values at the edges of the band of its dampers.
+        notices: further notices for the summary.
         report: path of the report and the function that writes it from the other files.
         command: command line that makes this run, for the summary.
         tell: function that is called with the summary before the film and the report, which take the longest.
@@ -165,8 +170,9 @@ def write_run(
         responses,
         files,
         measured=beside,
+        law_band=law_band,
         engine_reason=engine_reason or run.engine_reason,
-        notices=missing,
+        notices=[*missing, *notices],
         command=command,
     )
     write_json(folder / SUMMARY_FILE, summary.to_json())
@@ -210,6 +216,7 @@ def summarise(
     files: dict[str, str],
     *,
     measured: MeasuredSummary | None = None,
+    law_band: LawBandSummary | None = None,
     engine_reason: str = "",
     notices: Sequence[str] = (),
     command: str = "",
@@ -220,6 +227,7 @@ def summarise(
         responses: its FRFs of all acceleration channels to each independent plate motion; may be empty.
         files: name of each file by its purpose.
         measured: measurement that the run was compared with.
+        law_band: values at the edges of the band of its dampers.
         engine_reason: reason for the choice of the engine.
         notices: notices of the writer of the files, after those of the run.
         command: command line that makes this run.
@@ -268,6 +276,7 @@ def summarise(
         comfort=comfort_values(run),
         seat_value=seat_values(run),
         steering_wheel_rim=rim_values(run),
+        law_band=law_band,
         obstacle=obstacle_values(run),
         **force_values(run),
         static=StaticSummary(

@@ -24,6 +24,7 @@ from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import named, templates
 from vehicle.runs.report.order_words import force_rows
 from vehicle.runs.report.svg_figure import drawing
+from vehicle.signals.records.law_band_summary import band_rows, band_sentence
 from vehicle.signals.records.run_summary import interval_words
 
 fill = templates(__file__)
@@ -155,7 +156,7 @@ def time_figure(run: FinishedRun, runs: Sequence[FinishedRun] = ()) -> Markup:
 
 
 def dampers(run: FinishedRun) -> Markup | None:
-    """Return the table of slip, maximum velocity and maximum force of each damper; None without dampers."""
+    """Return tables of slip, largest velocity and force of each damper, and of their band; None without dampers."""
     summary = run.summary
     share, first = summary.slip_share, summary.first_slip_s
     if not first:
@@ -178,7 +179,9 @@ def dampers(run: FinishedRun) -> Markup | None:
             )
         )
     slip, limit = slip_words(summary.slip_limits, list(first)), 1e3 * summary.saturated_velocity
-    return fill("dampers", friction=run.friction, rows=rows, slip=slip, limit=limit)
+    text = band_sentence(summary)
+    band = {"rows": band_rows(summary), "caption": text[:1].upper() + text[1:]}
+    return fill("dampers", friction=run.friction, rows=rows, slip=slip, limit=limit, band=band)
 
 
 def _when(value: float | None) -> str:

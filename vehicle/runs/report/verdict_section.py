@@ -42,8 +42,8 @@ def verdict_section(figures: Mapping[str, Target], runs: Sequence[FinishedRun]) 
         sentences=[sentence(figures, car, each) for car, each in zip(cars, rated.values(), strict=True)],
         cars=cars,
         rows=rows,
-        caption="value and its 95 % interval on a random road; undecided if the limit lies inside the interval; the "
-        "worst of several runs",
+        caption="value and its 95 % interval on a random road; undecided if the limit lies inside the interval; "
+        "± ? if the interval is unknown; the worst of several runs",
     )
 
 
@@ -53,5 +53,7 @@ def _car_words(car: str) -> str:
 
 
 def _value(rated: Rated) -> str:
-    """Return value and half of its interval as text; a dash without a run."""
-    return "–" if rated.state == NOT_RUN else value_text(rated.value, rated.error)
+    """Return value and half of its interval as text, "?" for an unknown interval; a dash without a run."""
+    if rated.state == NOT_RUN:
+        return "–"
+    return f"{value_text(rated.value, rated.error)}{' ± ?' if rated.unknown else ''}"

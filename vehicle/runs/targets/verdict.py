@@ -2,7 +2,7 @@
 
 import math
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import resources
@@ -41,6 +41,7 @@ class Rated:
         state: `MET`, `MISSED`, `UNDECIDED` or `NOT_RUN`.
         run: name of the run; empty without one.
         runs: number of runs of the figure.
+        unknown: True for a value on a random road whose standard error is unknown; the value alone decides.
     """
 
     value: float = math.nan
@@ -48,6 +49,7 @@ class Rated:
     state: str = NOT_RUN
     run: str = ""
     runs: int = 0
+    unknown: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -172,8 +174,10 @@ def verdict(figures: Mapping[str, Target], runs: Sequence[RatedRun]) -> dict[str
                 value, error = run.value_of(figure)
             except ConfigurationError as fault:
                 raise ConfigurationError(f"{name} on {run.name}: {fault}") from None
-            state = state_of(figure, value, error)
-            values[run.label].append(Rated(value=value, error=error, state=state, run=run.name, runs=1))
+            state, unknown = state_of(figure, value, error), error is None and run.runs.random and math.isfinite(value)
+            values[run.label].append(
+                Rated(value=value, error=error, state=state, run=run.name, runs=1, unknown=unknown)
+            )
         for car, each in values.items():
             # A ratio over a channel at rest is no number, and not worse than the values of other runs.
             known = [rated_run for rated_run in each if not math.isnan(rated_run.value)] or each
@@ -224,10 +228,13 @@ def _command_for(figure: Target, run: RatedRun) -> str:
 def sentence(figures: Mapping[str, Target], car: str, rated: Mapping[str, Rated]) -> str:
     """Return text with the met and missed targets of a car."""
 
-    def named(state: str) -> list[str]:
-        return [figures[name].words or name.replace("_", " ") for name, each in rated.items() if each.state == state]
+    def named(chosen: Callable[[Rated], bool]) -> list[str]:
+        return [figures[name].words or name.replace("_", " ") for name, each in rated.items() if chosen(each)]
 
-    met, missed, undecided, absent = (named(state) for state in (MET, MISSED, UNDECIDED, NOT_RUN))
+    def in_state(state: str) -> list[str]:
+        return named(lambda each: each.state == state)
+
+    met, missed, undecided, absent = (in_state(state) for state in (MET, MISSED, UNDECIDED, NOT_RUN))
     if len(absent) == len(rated):
         return f"No target was checked for {car}: none of its runs is on an input of the targets file."
     text = f"{car} meets {len(met)} of {len(rated) - len(absent)} targets"
@@ -237,6 +244,8 @@ def sentence(figures: Mapping[str, Target], car: str, rated: Mapping[str, Rated]
         text += f"; the run is too short to decide on {_enumeration(undecided)}"
     if absent:
         text += f"; {_enumeration(absent)} had no run"
+    if unknown := named(lambda each: each.unknown):
+        text += f"; on another road of this kind {_enumeration(unknown)} may differ by an amount that is not known"
     return f"{text}."
 
 

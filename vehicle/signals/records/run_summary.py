@@ -11,6 +11,7 @@ from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.comfort_error import LEAST_EXPLAINED
 from vehicle.signals.analysis.contact_vibration import ContactVibration
 from vehicle.signals.analysis.seat_value import SeatValue
+from vehicle.signals.records.law_band_summary import LawBandSummary
 from vehicle.stored import Stored, omitted
 
 SUMMARY_FILE = "summary.json"
@@ -273,6 +274,7 @@ class RunSummary(Stored):
     comfort: dict[str, ComfortSummary]
     seat_value: SeatValue | None = None
     steering_wheel_rim: RimSummary | None = omitted()
+    law_band: LawBandSummary | None = omitted()
     obstacle: ObstacleSummary | None = None
     forces: dict[str, ForceSummary] | None = omitted()
     orders: list[OrderSummary] | None = omitted()

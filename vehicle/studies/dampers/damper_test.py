@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,12 +12,13 @@ import numpy as np
 import scipy
 
 from vehicle.arrays import Indices, Mask, Vector
-from vehicle.digits import number, rounded
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice, choose, pick
 from vehicle.signals.records.finding import findings_of
+from vehicle.studies.dampers.condition_values import condition_values
 from vehicle.studies.dampers.damper_force import Motion
 from vehicle.studies.dampers.damper_setting import Setting
 from vehicle.studies.dampers.record_checks import require_damping, require_sensors, usable_velocity
@@ -187,8 +187,9 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
             f"{path}: contains {time.size} samples, but at least {LEAST_SAMPLES} are needed; record a longer test"
         )
     x, force = sign * chosen.values["displacement"], sign * chosen.values["force"]
-    names = {role: measurement.channels[pick(measurement, complete.channels[role])].name for role in chosen.values}
-    require_sensors(path, chosen.values, names)
+    names = {role: measurement.channels[pick(measurement, name)].name for role, name in complete.channels.items()}
+    measured_values = {"time": time, **chosen.values}
+    require_sensors(path, measured_values, {"time": "time", **names})
     measured = None
     if "velocity" in chosen.values:
         measured = usable_velocity(path, time, x, sign * chosen.values["velocity"], names, notices)
@@ -201,7 +202,7 @@ def read_test(path: Path, choice: Choice | None = None, *, compression: bool = F
     settled = waveform.settled
     if not settled.all():
         notices.append(f"fitted from {time[settled][0]:.3g} to {time[settled][-1]:.3g} s, without run-up and run-down")
-    values, traces = _conditions(path, measurement, complete, conditions or {}, pattern)
+    values, traces = condition_values(measurement, complete, conditions or {}, pattern, measured_values)
     return DamperTest(
         name=path.stem, time=time, displacement=x, velocity=velocity, force=force, waveform=waveform,
         conditions=values, traces=traces, notices=tuple(notices),
@@ -300,47 +301,3 @@ def _velocity(x: Vector, measured: Vector | None, step: float, notices: list[str
     notices.append(f"velocity from the displacement, Savitzky-Golay filter of {WINDOW} samples: no delay, within "
                    f"{100.0 * GAIN_ERROR:.0f} % up to {limit:.3g} Hz")  # fmt: skip
     return np.asarray(derivative)
-
-
-def _conditions(path: Path, measurement: Measurement, choice: Choice, typed: Mapping[str, str],
-                pattern: str) -> tuple[dict[str, float], dict[str, Vector]]:  # fmt: skip
-    """Return the conditions of a test: typed, the mean of a channel, or from the name of the file; and the channels."""
-    values: dict[str, float] = {}
-    traces: dict[str, Vector] = {}
-    plain = dataclasses.replace(choice, detrend=False, highpass=None)
-    for name, text in typed.items():
-        if text.startswith("channel:"):
-            channels = {role: choice.channels[role] for role in ("time", "displacement") if role in choice.channels}
-            chosen = choose(
-                measurement, dataclasses.replace(plain, channels=channels | {name: text.removeprefix("channel:")})
-            )
-            traces[name] = chosen.values[name]
-            values[name] = rounded(float(np.mean(traces[name])), 3)
-        else:
-            values[name] = _number(text, f"--condition {name}={text}")
-    if pattern:
-        names = re.findall(r"\{(\w+)\}", pattern)
-        parts = re.split(r"(\{\w+\}|\*)", pattern)
-        form = "".join(
-            ".*?" if part == "*" else r"(-?\d+(?:[.x,]\d+)?)" if part.startswith("{") else re.escape(part)
-            for part in parts
-        )
-        match = re.fullmatch(form, path.stem)
-        if not names or match is None:
-            raise ConfigurationError(
-                f"--pattern {pattern}: {'has no {condition}' if not names else f'does not match {path.stem}'}; "
-                "write the file name with the condition in braces and * for the rest, for example "
-                f"'*Hz{{current}}A'"
-            )
-        values |= {
-            n: _number(re.sub("[x,]", ".", text), pattern) for n, text in zip(names, match.groups(), strict=True)
-        }
-    return values, traces
-
-
-def _number(text: str, where: str) -> float:
-    """Return a number; raise ConfigurationError with the option."""
-    try:
-        return float(text)
-    except ValueError:
-        raise ConfigurationError(f"{where}: must be a number, or channel:NAME") from None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from os import PathLike
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from vehicle.arrays import Vector
 from vehicle.digits import rounded
 from vehicle.errors import ConfigurationError
 from vehicle.signals.records.choice import Choice
-from vehicle.studies.dampers.conditions import by_conditions, with_setting
+from vehicle.studies.dampers.conditions import by_conditions, fitted_beyond_lag, with_setting
 from vehicle.studies.dampers.damper_choice import choose_law
 from vehicle.studies.dampers.damper_fit import DamperFit, kind_of, limits_of
 from vehicle.studies.dampers.damper_law import LINEAR, values_of
@@ -192,8 +193,8 @@ def fit_damper(
             # The number of laws is not known before: 25 to 45 are usual.
             tell(READING + (1.0 - READING) * (len(fitted) + count / (count + HALF_OF_LAWS)) / len(groups))
 
-        fit, compared = choose_law(group, of_laws)
-        fitted.append(FittedDamper(conditions=group[0].conditions, tests=group, fit=fit, compared=compared))
+        fitted_tests, (fit, compared) = fitted_beyond_lag(group, partial(choose_law, progress=of_laws))
+        fitted.append(FittedDamper(conditions=group[0].conditions, tests=fitted_tests, fit=fit, compared=compared))
     tell(1.0)
     return [each for whole in fitted for each in whole.settings()]
 

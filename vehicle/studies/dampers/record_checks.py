@@ -1,5 +1,6 @@
 """Checks of a damper test before it is fitted: dead or copied sensors, units, and channels of different motions."""
 
+import itertools
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -37,7 +38,7 @@ def require_sensors(path: Path, values: Mapping[str, Vector], names: Mapping[str
 
     Args:
         path: file of the test.
-        values: displacement [m], force [N] and, if measured, velocity [m/s] by role; (n,) each.
+        values: time [s], displacement [m], force [N] and, if measured, velocity [m/s] by role; (n,) each.
         names: name of the channel of each role in the file.
     """
     for role in ("displacement", "force"):
@@ -55,8 +56,8 @@ def require_sensors(path: Path, values: Mapping[str, Vector], names: Mapping[str
                 "unit "
                 f"of channel {names[role]!r}, for example --unit {role}={other}"
             )
-    for role, copy in (("displacement", "force"), ("displacement", "velocity"), ("velocity", "force")):
-        if role in values and copy in values and is_copy(values[role], values[copy]):
+    for role, copy in itertools.combinations(values, 2):
+        if is_copy(values[role], values[copy]):
             raise DataError(
                 f"{path}: the channels {names[role]!r} and {names[copy]!r} contain the same values, so they cannot be "
                 f"{role} and {copy}; choose others with --channel {role}=NAME and --channel {copy}=NAME"

@@ -1,5 +1,6 @@
 """Measured dynamic stiffness and loss angle of a mount over frequency and amplitude, from a table with units."""
 
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -54,10 +55,16 @@ def read_stiffness(path: Path) -> MeasuredStiffness:
 
     Raises:
         ConfigurationError: the file does not exist.
-        DataError: a missing or unknown column or unit, a value out of range, or too few points.
+        DataError: a missing or unknown column or unit, a value out of range, equal columns, or too few points.
     """
     table = read_table(path, Wanted(needed=NEEDED, key=_frequency, columns=_columns))
     columns = {name: _column(table, name) for name in UNITS}
+    for first, second in itertools.combinations(UNITS, 2):
+        values, copy = (table.values[:, _index(table.header, name)] for name in (first, second))
+        if np.ptp(values) > 0.0 and np.array_equal(values, copy):
+            raise DataError(
+                f"{path}: the columns {first!r} and {second!r} contain the same values; correct one of them"
+            )
     frequency, amplitude = columns["frequency"], columns["amplitude"]
     rows, lines = len(frequency), len(np.unique(frequency))
     if rows < LEAST_ROWS or lines < LEAST_FREQUENCIES:
