@@ -99,7 +99,8 @@ def kinds(makers):
     car, rng, changed = makers.car, makers.rng, makers.changed
     time = np.arange(round(SECONDS * RATE) + 1) / RATE
     engine = sum(np.sin(2.0 * np.pi * f * time) for f in (13.0, 26.0, 39.0))
-    springs = {f"{axle}.main_spring.stiffness": car[f"{axle}.main_spring.stiffness"].value for axle in ("front", "rear")}
+    paths = [f"{axle}.main_spring.stiffness" for axle in ("front", "rear")]
+    springs = {path: car[path].value for path in paths}
     van = {"body.mass": 1.5 * car["body.mass"].value} | {path: 1.7 * k for path, k in springs.items()}
     trunk = {"load.trunk.mass": 500.0, "load.trunk.at": [3.3, 0.0, 0.9]}
     dampers = [
