@@ -90,8 +90,8 @@ ROOMS: dict[str, set[str]] = {
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "tables", "threads"},
     "mounts": {"formats", "parameters"},
     "dampers": {"core", "formats", "parameters", "records", "rendering", "report", "threads"},
-    "diagnosis": {"analysis", "car", "excitation", "formats", "laws", "output", "parameters", "records", "reduced"}
-    | {"rendering", "threads"},
+    "diagnosis": {"analysis", "car", "excitation", "formats", "laws", "linear", "output", "parameters", "records"}
+    | {"reduced", "rendering", "report", "threads"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
     "sweeps": {"analysis", "car", "excitation", "figures", "flexbody", "formats", "machine", "notebook"}
     | {"output", "parameters", "reduced", "rendering", "report", "simulation", "threads"},
@@ -111,7 +111,7 @@ ROOMS: dict[str, set[str]] = {
 """What each room, and each module above the rooms, imports of the package: this and no more, and all of it."""
 
 STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "figures", "flexbody", "formats", "laws"} | {
-    *("linear", "output", "parameters", "reduced", "rendering", "simulation", "sweeps", "threads")
+    *("linear", "output", "parameters", "records", "reduced", "rendering", "simulation", "sweeps", "threads")
 }
 """What `scenarios` imports of the package; the package imports nothing of `scenarios`."""
 

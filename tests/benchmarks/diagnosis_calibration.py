@@ -27,6 +27,7 @@ from vehicle.studies.diagnosis.car_diagnosis import SURE, WORN
 from vehicle.studies.diagnosis.diagnosis import Diagnostics
 from vehicle.studies.diagnosis.drawn_car import CarPrior, DrawnCar
 from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts
+from vehicle.studies.diagnosis.driven_modes import ModeFit
 from vehicle.studies.diagnosis.features import Bands
 from vehicle.studies.diagnosis.record_gain import GainTest
 from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, drawn_road, drive
@@ -46,7 +47,8 @@ def both(car, speed=SPEED, count=None):
     assert phone.at_wheels is not None
     swapped = replace(phone.drives, features=phone.drives.features[::-1])
     test = GainTest(swapped.features[0], len(EIGHT) * Bands.COUNT, TOGETHER)
-    eight = replace(phone, channels=EIGHT, drives=swapped, learned=phone.at_wheels, gain_test=test)
+    modes = ModeFit(swapped.features[0], swapped.modes, swapped.of("level"), TOGETHER)
+    eight = replace(phone, channels=EIGHT, drives=swapped, learned=phone.at_wheels, gain_test=test, modes=modes)
     return {"phone": phone, "eight": eight}
 
 

@@ -63,7 +63,7 @@ def test_a_page_is_short_and_its_caption_a_sentence(page):
 def test_the_index_shows_every_picture_and_no_other_lies_there():
     index = (ROOT / FOLDER / "index.md").read_text(encoding="utf-8")
     pages = gallery_pages()
-    assert len(pages) == 24
+    assert len(pages) == 25
     for page in pages:
         name = page.removeprefix(FOLDER)
         assert f"(pictures/{shown(page).file.name})]({name})" in index

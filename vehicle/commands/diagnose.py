@@ -50,7 +50,8 @@ class DiagnoseSettings(Settings):
     destination: Destination = part(Destination)
     figures: bool = True
     speed: str = setting(
-        "speed of the car [km/h], two speeds between which it lies (LOW:HIGH), or channel:NAME of the record",
+        "speed of the car [km/h], two speeds between which it lies (LOW:HIGH), channel:NAME of the record, or "
+        "position:LATITUDE,LONGITUDE with two channels of a satellite receiver",
         "",
         metavar="KM/H|channel:NAME",
         required=True,
@@ -61,6 +62,12 @@ class DiagnoseSettings(Settings):
         (),
         action="append",
         metavar="POINT",
+    )
+    forward: str = setting(
+        "axis of the devices of --free that points forward, for example y, or --forward=-z; by default from the "
+        "changes of a recorded speed",
+        "",
+        metavar="AXIS",
     )
     parts: str = setting(
         "groups in the table: dampers, tyres, mounts, springs, friction; default: %(default)s",
@@ -83,7 +90,7 @@ def parser() -> Parser:
     parser = command_parser(
         "diagnose", "Tell from a record of a drive which damper of a car is worn; the road need not be known."
     )
-    setting_options(parser, DiagnoseSettings, "file", "speed", "free", "parts", "drives", "seed")
+    setting_options(parser, DiagnoseSettings, "file", "speed", "free", "forward", "parts", "drives", "seed")
     mapping_options(parser)
     record_options(parser, "", channel=False, highpass=False)
     vehicle_options(parser)
@@ -95,19 +102,20 @@ def parser() -> Parser:
 
 
 def speed_of(text: str) -> float | str | tuple[float, float]:
-    """Return the speed of a text: a number, a range, or the text channel:NAME.
+    """Return the speed of a text: a number, a range, or the text that names channels.
 
     Raises:
         ConfigurationError: another form.
     """
-    if text.startswith("channel:") and len(text) > len("channel:"):
+    if any(text.startswith(prefix) and text != prefix for prefix in ("channel:", "position:")):
         return text
     numbers = finite_numbers(text, ":")
     if len(numbers) == 1:
         return numbers[0]
     if len(numbers) == 2:
         return numbers[0], numbers[1]
-    raise ConfigurationError(f"--speed {text}: must be a speed [km/h], LOW:HIGH or channel:NAME, for example 80")
+    raise ConfigurationError(f"--speed {text}: must be a speed [km/h], LOW:HIGH, channel:NAME or "
+                             "position:LATITUDE,LONGITUDE, for example 80")  # fmt: skip
 
 
 def _job(settings: DiagnoseSettings, console: Console) -> None:
@@ -128,6 +136,7 @@ def _job(settings: DiagnoseSettings, console: Console) -> None:
             choice=choice,
             inverted=settings.measured.turned,
             free=settings.free,
+            forward=settings.forward,
             parts=settings.parts.split(","),
             count=settings.drives,
             seed=settings.seed,

@@ -54,7 +54,7 @@ class ReportSettings(Settings):
     """
 
     runs: tuple[Path, ...] = setting(
-        "folder of a run, for example runs/low; further runs are compared with the first",
+        "folder of a run, for example runs/low; further runs are compared with the first. Or the folder of a diagnosis",
         flag="runs",
         nargs="+",
         type=Path,
@@ -80,10 +80,14 @@ class ReportSettings(Settings):
 
 def _job(settings: ReportSettings, console: Console) -> None:
     from vehicle.handover.page.report_file import require_figures, write_report
+    from vehicle.studies.diagnosis.diagnosis_files import SUMMARY
 
     missing = next((run for run in settings.runs if not run.is_dir()), None)
     if missing is not None:
         raise ConfigurationError(f"{missing}: is not a folder; give the folder of a run, for example runs/low")
+    if any((run / SUMMARY).is_file() for run in settings.runs):
+        _report_diagnosis(settings, console)
+        return
     default = settings.runs[0] / REPORT if len(settings.runs) == 1 else Path(REPORT)
     path, film = settings.destination.file(default, ending=".html"), None
     if settings.film.video is not None:
@@ -106,6 +110,22 @@ def _job(settings: ReportSettings, console: Console) -> None:
         author=settings.author,
         project=settings.project,
     )
+    console.say(f"report      {path}, {path.stat().st_size / 1e6:.1f} MB")
+
+
+def _report_diagnosis(settings: ReportSettings, console: Console) -> None:
+    """Write the report of the folder of `diagnose`."""
+    from vehicle.runs.output.folder import write_text
+    from vehicle.studies.diagnosis.diagnosis_page import diagnosis_page
+
+    if len(settings.runs) > 1 or settings.targets or settings.measure or settings.level_map or settings.film.video:
+        raise ConfigurationError(
+            f"report: {settings.runs[0]} is a diagnosis, which has a report of its own; give its folder alone, without "
+            "--targets, --measure, --level-map and --video"
+        )
+    folder = settings.runs[0]
+    path = settings.destination.file(folder / REPORT, ending=".html")
+    write_text(path, diagnosis_page(folder, author=settings.author, project=settings.project))
     console.say(f"report      {path}, {path.stat().st_size / 1e6:.1f} MB")
 
 

@@ -8,7 +8,7 @@ import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.records.choice import Choice
-from vehicle.studies.diagnosis.drive_record import DriveRecord, read_drive, upright, usable_parts
+from vehicle.studies.diagnosis.drive_record import DriveRecord, read_drive, usable_parts
 
 RATE = 200.0
 CHANNELS = ("seat_rail_acc_x", "seat_rail_acc_z")
@@ -80,29 +80,6 @@ def test_a_short_record_is_refused():
         usable_parts(record(12.0))
 
 
-def device(samples, turn):
-    names = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")
-    return replace(record(), channels=names, samples=turn @ (samples + np.array([[0.0], [0.0], [9.81]])))
-
-
-def test_a_device_in_any_direction_is_turned_upright():
-    rng = np.random.default_rng(7)
-    samples = np.array([[0.5], [0.3], [1.0]]) * rng.standard_normal((3, 8000))
-    samples -= samples.mean(axis=1, keepdims=True)
-    for turn in (np.eye(3), np.diag([1.0, -1.0, -1.0]), scipy.spatial.transform.Rotation.random(rng=3).as_matrix()):
-        found = upright(device(samples, turn), "seat_rail").samples
-        assert found[2] == pytest.approx(samples[2] + 9.81, abs=1e-9)
-        # The horizontal axes keep any angle: their squares add up.
-        assert np.sum(found[:2] ** 2) == pytest.approx(np.sum(samples[:2] ** 2))
-
-
-def test_a_device_needs_gravity_and_three_axes():
-    with pytest.raises(DataError, match="the mean of seat_rail is 0"):
-        upright(device(np.full((3, 8000), [[0.0], [0.0], [-9.81]]), np.eye(3)), "seat_rail")
-    with pytest.raises(ConfigurationError, match="needs all three axes"):
-        upright(record(), "seat_rail")
-
-
 def test_files_give_accelerations_and_speed(tmp_path):
     time = np.arange(4000) / RATE
     table = np.column_stack([time, *record(20.0).samples, np.full(4000, 79.2)])
@@ -118,3 +95,35 @@ def test_files_give_accelerations_and_speed(tmp_path):
         read_drive(file, CHANNELS, 5.0, Choice())
     with pytest.raises(DataError, match="no velocity but acceleration"):
         read_drive(file, CHANNELS, "channel:seat_rail_acc_x", Choice())
+
+
+def test_positions_give_the_speed_and_empty_rows_are_skipped(tmp_path):
+    time = np.arange(4000) / RATE
+    # A circle of 400 m radius at 22 m/s around 48 deg north: degrees of the meridian and of the parallel there.
+    angle = 22.0 * time / 400.0
+    latitude, longitude = 48.0 + 400.0 * np.sin(angle) / 111_200.0, 11.0 + 400.0 * np.cos(angle) / 74_630.0
+    # A fix each second, rounded to 1e-6 deg (0.1 m).
+    cells = [
+        f"{a:.6f},{b:.6f}" if k % 200 == 0 else "," for k, (a, b) in enumerate(zip(latitude, longitude, strict=True))
+    ]
+    file = tmp_path / "phone.csv"
+    rows = [
+        f"{t:.3f},{x:.6f},{z:.6f},{fix}" for t, (x, z), fix in zip(time, record(20.0).samples.T, cells, strict=True)
+    ]
+    head = "time [s],seat_rail_acc_x [m/s2],seat_rail_acc_z [m/s2],Latitude [deg],Longitude [deg]"
+    file.write_text("\n".join([head, *rows]), encoding="utf-8")
+    found = read_drive(file, CHANNELS, "position:Latitude,Longitude", Choice())
+    # Chords over 4 s of the circle are shorter by (0.22)^2/24 x 3/5, and a slope errs by 0.03 m / sqrt(10) s.
+    assert found.speed == pytest.approx(np.full(4000, 22.0), rel=0.005)
+    assert "speed from 20 positions: 79" in found.notices[-1]
+    noisy = np.random.default_rng(3).normal(0.0, 5.0 / 111_200.0, 20)
+    with pytest.raises(DataError, match=r"the speed is uncertain by 5.\d %, but at most 2 % are allowed"):
+        text = file.read_text(encoding="utf-8")
+        for fix, error in zip(cells[::200], noisy, strict=True):
+            text = text.replace(fix, f"{float(fix.partition(',')[0]) + error:.6f},{fix.partition(',')[2]}")
+        file.write_text(text, encoding="utf-8")
+        read_drive(file, CHANNELS, "position:Latitude,Longitude", Choice())
+    with pytest.raises(DataError, match="is no angle but acceleration"):
+        read_drive(file, CHANNELS, "position:Latitude,seat_rail_acc_x", Choice())
+    with pytest.raises(ConfigurationError, match="must name two channels"):
+        read_drive(file, CHANNELS, "position:Latitude", Choice())

@@ -105,6 +105,58 @@ point create &
 """
 
 
+SUB = """[MDI_HEADER]
+FILE_TYPE = 'sub'
+[SUBSYSTEM_HEADER]
+ MAJOR_ROLE = 'suspension'
+ MINOR_ROLE = 'front'
+[UNITS]
+LENGTH = 'mm'
+MASS = 'kg'
+[HARDPOINT]
+{hardpoint_name          symmetry  x_value       y_value       z_value}
+ 'lca_front         '   'left/right'  -20.0  -400.0  190.0
+ 'lca_rear          '   'left/right'  300.0  -410.0  195.0
+ 'lca_outer         '   'left/right'  5.0  -700.0  170.0
+ 'top_mount         '   'left/right'  45.0  -575.0  870.0
+ 'tierod_outer      '   'left/right'  150.0  -720.0  280.0
+ 'wheel_center      '   'left/right'  0.0  -750.0  330.0
+ 'subframe_front    '   'left/right'  -400.0  -450.0  150.0
+[PART_ASSEMBLY]
+ USAGE = 'upright'
+ MASS  = 12.5
+[NSPRING_ASSEMBLY]
+ USAGE = 'spring'
+ PROPERTY_FILE = '<acar_shared>/springs.tbl/front.spr'
+"""
+
+PAR = """PARSFILE
+#FullDataName Vehicle: Sprung Mass`Hatchback
+M_SU 1111 ; kg ! Sprung mass
+LX_CG_SU 1040 ; mm
+LX_AXLE(2) 2600 ; mm ! X distance of axle 2
+IAXLE 1
+M_US 60
+L_TRACK 1481
+H_WC 298
+KSPRING_L(1,1) 27 ; N/mm
+KSPRING_L(1,2) 27 ; N/mm
+IAXLE 2
+M_US 60.5
+L_TRACK 1486
+ISIDE 1
+KSPRING_L 30
+ISIDE 2
+KSPRING_L 30
+FD_TABLE LINEAR
+-1000, -1500
+1000, 1500
+ENDTABLE
+OPT_BK 1
+END
+"""
+
+
 def urdf(wheel_mass: float = 20.0, chassis: float = 1300.0) -> str:
     """Return a car of a chassis, a turned engine and four wheels; wheelbase 2.6 m, track 1.5 m, radius 0.31 m."""
     wheels = "".join(

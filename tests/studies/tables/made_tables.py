@@ -3,9 +3,12 @@
 Each has its source, and the plain figures of the source from which a test computes loads and frequencies by hand.
 """
 
+from pathlib import Path
 from typing import NamedTuple
 
-POUND_FORCE, FOOT = 4.4482216152605, 0.3048
+import openpyxl  # type: ignore[import-untyped]
+
+POUND_FORCE, FOOT, POUND, POUND_INCH = 4.4482216152605, 0.3048, 0.45359237, 175.12683524647636
 
 
 class MadeTable(NamedTuple):
@@ -14,10 +17,11 @@ class MadeTable(NamedTuple):
     Attributes:
         source: publication.
         name: name of the file.
-        text: its content.
+        text: its content; of an XLSX file each sheet below its title in brackets, cells with semicolons between them.
         kerb: mass [kg].
         front: load of the front axle [kg].
         unsprung, wheel_rate, tyre: of an axle [kg], of a wheel [N/m].
+        ride: tolerance of the ride frequencies; 0.02 where the linkage has rubber in the car and none in the source.
     """
 
     source: str
@@ -28,6 +32,23 @@ class MadeTable(NamedTuple):
     unsprung: tuple[float, float]
     wheel_rate: tuple[float, float]
     tyre: tuple[float, float]
+    ride: float = 5e-3
+
+    def write(self, folder: Path) -> Path:
+        """Write the file of the table."""
+        path = folder / self.name
+        if path.suffix != ".xlsx":
+            path.write_text(self.text, encoding="utf-8")
+            return path
+        book = openpyxl.Workbook()
+        book.remove(book.active)
+        for line in self.text.splitlines():
+            if line.startswith("["):
+                sheet = book.create_sheet(line.strip("[]"))
+                continue
+            sheet.append([float(cell) if cell.replace(".", "").isdigit() else cell or None for cell in line.split(";")])
+        book.save(path)
+        return path
 
 
 ESCORT = MadeTable(
@@ -122,7 +143,7 @@ CG to front axle,1350,mm
 CG height,0.55,m
 tyre radius,300,mm
 """,
-    1390.0, 1390.0 * 1.45 / 2.8, (120.0, 120.0), (16812.0, 16812.0), (190e3, 190e3),
+    1390.0, 1150.0 * 1.45 / 2.8 + 120.0, (120.0, 120.0), (16812.0, 16812.0), (190e3, 190e3),
 )  # fmt: skip
 
 SPORTS = MadeTable(
@@ -190,4 +211,129 @@ loaded tyre radius,0.305,m
     1650.0, 842.0, (95.0, 80.0), (24500.0, 26000.0), (310526.0, 310526.0),
 )  # fmt: skip
 
-TABLES = (ESCORT, BMW, VANAGON, HALF_CAR, SPORTS, CORNERS, CHRONO)
+SEVEN_DOF = MadeTable(
+    "ride model of a passenger car, ISRN Mechanical Engineering 2015, 974020, table 2; CoG of the body",
+    "seven_dof.xlsx",
+    """[Data]
+Full car model
+
+Parameter;Value;Unit
+Sprung mass;1460;kg
+Roll moment of inertia (body);460;kg·m²
+Pitch moment of inertia (body);2460;kg·m²
+Distance CG - front axle;1.011;m
+Distance CG - rear axle;1.803;m
+Width of track;1.51;m
+
+Wheel;Unsprung mass [kg];Suspension stiffness [N/m];Suspension damping [N·s/m];Tyre stiffness [N/m]
+FL;40;19960;1290;175500
+FR;40;19960;1290;175500
+RL;35.5;17500;1690;175500
+RR;35.5;17500;1690;175500
+""",
+    1611.0, 1460.0 * 1.803 / 2.814 + 80.0, (80.0, 71.0), (19960.0, 17500.0), (175500.0, 175500.0),
+)  # fmt: skip
+
+HEAVE = MadeTable(
+    "MathWorks, Vehicle Dynamics 14DOF (heave and roll of axles), rims added to the unsprung masses", "heave.xlsx",
+    """[Axles]
+Vehicle data sheet
+Parameter;Front axle;;Rear axle;
+;Value;Unit;Value;Unit
+Heave stiffness (per axle);40;kN/m;50;kN/m
+Heave damping (per axle);3.5;kN s/m;3.5;kN s/m
+Track width;1600;mm;1600;mm
+Unsprung mass of the axle incl. rims;115;kg;110;kg
+Tyre vertical stiffness;239.45;kN/m;239.45;kN/m
+[Body]
+Body mass;kg;1600
+Wheelbase;mm;3000
+CG behind front axle (body);mm;1500
+CG height (body);mm;614.7
+Tyre free radius;mm;350
+
+Inertia tensor of the body [kg m^2];x;y;z
+x;600;0;0
+y;0;3000;0
+z;0;0;3200
+""",
+    1825.0, 915.0, (115.0, 110.0), (20000.0, 25000.0), (239450.0, 239450.0),
+)  # fmt: skip
+
+SCRIPT = MadeTable(
+    "full-vehicle model as it is quoted from Ikenaga, Lewis, Campos, Davis, American Control Conference 2000 (the "
+    "paper itself was not read)", "script.m",
+    """% full vehicle model
+ms = 1500;      % sprung mass, kg
+mus = 59;       % unsprung mass at each wheel, kg
+Ixx = 460;      % kg m^2
+Iyy = 2160;     % kg m^2
+ksf = 35000;    % front suspension spring, N/m
+ksr = 38000;    % rear suspension spring, N/m
+csf = 1000;     % N s/m
+csr = 1100;     % N s/m
+kt = 190000;    % N/m
+a = 1.4;        % CG to front axle, m
+b = 1.7;        % CG to rear axle, m
+""",
+    1736.0, 1500.0 * 1.7 / 3.1 + 118.0, (118.0, 118.0), (35000.0, 38000.0), (190e3, 190e3),
+)  # fmt: skip
+
+US_UNITS = MadeTable(
+    "seven-degree-of-freedom ride exercise (1200 kg, a 1.0 m, b 1.1 m, wheels 30 kg, 16 and 18 kN/m, tyres 150 kN/m), "
+    "rounded in US units", "us_units.csv",
+    """Item,Front,Rear,Units
+Total weight,2645.5,,lb
+Weight distribution,52.4/47.6,,%
+Unsprung weight per wheel,66.14,66.14,lb
+Spring rate at wheel,91.36,102.78,lb/in
+Shock rate at wheel,30.83,30.83,lb-s/in
+Tire rate,856.5,856.5,lb/in
+Track,47.24,47.24,in
+Wheelbase,82.68,,in
+""",
+    2645.5 * POUND, 0.524 * 2645.5 * POUND, (132.28 * POUND,) * 2, (91.36 * POUND_INCH, 102.78 * POUND_INCH),
+    (856.5 * POUND_INCH,) * 2,
+)  # fmt: skip
+
+WISHBONES = MadeTable(
+    "Project Chrono, VW T2 front double wishbones, in SAE axes with decimal commas; the ratio of the spring, 0.4518, "
+    "from the velocities of the linkage with ideal joints", "wishbones.csv",
+    """Fahrzeug;VW T2
+Achsen: SAE J670 (x vorn, y rechts, z unten); Ursprung Mitte Vorderachse
+
+Vorderachse;x [mm];y [mm];z [mm]
+Radmitte;-40,0;697,5;26,0
+Oberer Querlenker vorn;-48,0;233,5;-245,0
+Oberer Querlenker hinten;-268,0;265,5;-196,0
+Oberes Traggelenk;-53,0;503,5;-215,0
+Unterer Querlenker vorn;223,0;94,5;0,0
+Unterer Querlenker hinten;-223,0;95,4;0,0
+Unteres Traggelenk;-36,0;574,5;118,0
+Spurstange innen;-250,0;200,0;-54,0
+Spurstange außen;-176,0;599,0;16,0
+Feder oben;104,0;297,5;-197,0
+Feder unten;97,0;330,5;47,0
+Dämpfer oben;104,0;297,5;-323,0
+Dämpfer unten;97,0;330,5;47,0
+
+Hinterachse;;;
+Radmitte;-2400,0;697,5;26,0
+
+Gesamtfahrzeug;Wert;Einheit
+Aufbaumasse;2.321,0;kg
+Ungefederte Masse Vorderachse;160,0;kg
+Ungefederte Masse Hinterachse;150,0;kg
+Abstand Schwerpunkt Aufbau zur Vorderachse;1.204,0;mm
+Federsteifigkeit vorn;112,9;N/mm
+Radrate hinten;28,0;N/mm
+Dämpferkonstante vorn;43,29;kNs/m
+Reifensteifigkeit;175;N/mm
+Reifenhalbmesser (statisch);352,0;mm
+Schwerpunkthöhe;660,0;mm
+""",
+    2631.0, 2321.0 * (1.0 - 1.204 / 2.36) + 160.0, (160.0, 150.0), (112.9e3 * 0.45176**2, 28e3),
+    (175e3, 175e3), ride=0.02,
+)  # fmt: skip
+
+TABLES = (ESCORT, BMW, VANAGON, HALF_CAR, SPORTS, CORNERS, CHRONO, SEVEN_DOF, HEAVE, SCRIPT, US_UNITS, WISHBONES)

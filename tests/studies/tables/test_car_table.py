@@ -13,6 +13,7 @@ from vehicle.studies.design.axle_types import AXLE_TYPES, axle_type_names
 from vehicle.studies.design.new_car import new_car
 from vehicle.studies.design.stated_numbers import stated_numbers
 from vehicle.studies.design.template_car import template_car
+from vehicle.studies.design.written_table import table_lines
 from vehicle.studies.tables.car_table import car_table
 from vehicle.studies.tables.unit_factor import unit_factor
 
@@ -162,8 +163,12 @@ def test_bushings_of_a_table(tmp_path):
                  "tie rod inner,front,1,1,1,1,1,1\n")  # fmt: skip
     assert table.parameters["front", "bushings.arm_rear.stiffness"][0] == [8e5, 9e5, 5e5]
     assert table.parameters["rear", "bushings.pivot.damping"][0] == [700.0, 1000.0, 700.0]
-    car = new_car("mine", "sedan", stated_numbers(None, {}, table.numbers), table).car
-    assert list(car["front.bushings.arm_rear.stiffness"].value) == [8e5, 9e5, 5e5]
+    result = new_car("mine", "sedan", stated_numbers(None, {}, table.numbers), table)
+    assert list(result.car["front.bushings.arm_rear.stiffness"].value) == [8e5, 9e5, 5e5]
+    own = read(tmp_path, "\n".join(table_lines(result, template_car("sedan"), table)), name="own.csv")
+    assert {key: value for key, (value, _) in own.parameters.items()} == {
+        key: value for key, (value, _) in table.parameters.items()
+    }
     assert sum("tie rod inner" in text for _, text in table.left_out) == 2
 
 
@@ -219,7 +224,7 @@ BAD = {
     "axle or place": ("name,x,y,z\nlca rear front,0,400,200\n", "two places, one of which is the axle"),
     "no size": ("name,value\nwheelbase,26.5\n", "has no unit"),
     "wrong unit": ("name,value,unit\nwheelbase,2.6,kg\n", "needs one such as m or mm"),
-    "impossible": ("name,value,unit\nwheelbase,2600,m\n", "2600 m, must be 1 to 8 m"),
+    "impossible": ("name,value,unit\nwheelbase,2600,m\n", "2600 m, must be 1 to 4.2 m"),
     "twice": ("name,value,unit\nmass,1400,kg\ncurb weight,1500,kg\n", "two values of kerb mass"),
     "wheel or axle": ("name,value,unit\nunsprung mass front,64,kg\n", "of a wheel or of an axle"),
     "thousand or decimal": ("name;value;unit\nmass;1,450;kg\n", "thousand or a decimal"),

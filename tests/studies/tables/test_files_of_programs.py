@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from tests.studies.tables.made_files import ADM, CMD, TIR_52, TIR_61, urdf
+from tests.studies.tables.made_files import ADM, CMD, PAR, SUB, TIR_52, TIR_61, urdf
 from tests.validation import validated
 from vehicle.engines.simulation.car_masses import car_masses
 from vehicle.errors import VehicleError
@@ -142,6 +142,43 @@ def test_masses_and_inertia_of_a_urdf_are_those_of_mujoco(tmp_path):
     assert car_masses(car.model).mass == pytest.approx(1530.0, rel=1e-6)
 
 
+def test_points_and_masses_of_an_adams_subsystem(tmp_path):
+    table = read(written(tmp_path, "front.sub", SUB))
+    assert table.points["front"]["lower_ball"] == pytest.approx((0.005, 0.7, -0.16), abs=1e-9)
+    assert table.points["front"]["tie_outer"] == pytest.approx((0.15, 0.72, -0.05), abs=1e-9)
+    assert table.parameters["front", "parts.knuckle.mass"][0] == 12.5
+    left_out = " ".join(text for _, text in table.left_out)
+    assert "front.spr" in left_out and "subframe_front" in left_out
+
+
+def test_keywords_of_a_carsim_file(tmp_path):
+    table = read(written(tmp_path, "car.par", PAR))
+    expected = {"kerb_mass": 1231.5, "wheelbase": 2.6, "track_front": 1.481, "track_rear": 1.486, "tyre_radius": 0.298,
+                "unsprung_mass_rear": 60.5, "wheel_rate_front": 27e3, "wheel_rate_rear": 30e3,
+                "cog_x": (1111.0 * 1.04 + 60.5 * 2.6) / 1231.5}  # fmt: skip
+    for key, value in expected.items():
+        assert table.numbers[key] == pytest.approx(value, rel=1e-6), key
+    assert any("FD_TABLE" in text and "OPT_BK" in text for _, text in table.left_out)
+
+
+def test_what_replaces_the_vertical_stiffness_of_a_tyre_file_is_named(tmp_path):
+    curve = "[DEFLECTION_LOAD_CURVE]\n{pen fz}\n0 0\n0.01 1800\n0.02 4100\n0.03 6900\n"
+    table = read(written(tmp_path, "a.tir", TIR_52.replace("PKX3 ", "PPX1 = -0.4\nPKX3 ") + curve))
+    assert "DEFLECTION_LOAD_CURVE" in table.origins.get("tyre_stiffness_front", "")
+    left_out = " ".join(text for _, text in table.left_out)
+    assert "VERTICAL_STIFFNESS" in left_out and "PPX1" in left_out
+    scaled = read(written(tmp_path, "b.tir", TIR_52.replace("LFZO  ", "LCZ = 0.5\nLFZO  ")))
+    assert scaled.numbers["tyre_stiffness_front"] == pytest.approx(1.05e5, rel=1e-12)
+    assert "LCZ 0.5" in scaled.origins["tyre_stiffness_front"]
+
+
+def test_a_steering_wheel_is_no_wheel_of_the_car(tmp_path):
+    steering = """<link name="steering_wheel"><inertial><mass value="1"/></inertial></link>
+    <joint name="column" type="fixed"><parent link="base"/><child link="steering_wheel"/></joint></robot>"""
+    table = read(written(tmp_path, "car.urdf", urdf().replace("</robot>", steering)))
+    assert (table.numbers["kerb_mass"], table.numbers["unsprung_mass_front"]) == (1531.0, 40.0)
+
+
 WRONG = [
     ("fiala.tir", TIR_52.replace("FITTYP                   =52", "PROPERTY_FILE_FORMAT = 'FIALA'"),
      "FIALA.*MF-Tyre 6.1"),
@@ -158,9 +195,11 @@ WRONG = [
                                  '<joint name="mount" type="fixed"><parent link="base"/>'), "loop"),
     ("text.urdf", "<robot", "no XML"),
     ("a.mnf", "x", "flexible body.*body import"),
-    ("a.par", "x", "CarSim.*CSV"),
+    ("a.par", "x", "nothing in it is a number"),
+    ("a.sub", SUB.replace("LENGTH = 'mm'\n", ""), "unit of length"),
+    ("b.sub", "[UNITS]\nLENGTH = 'mm'\n", "no block .HARDPOINT."),
     ("a.spck", "x", "Simpack.*CSV"),
-    ("a.asy", "x", "assembly.*CSV"),
+    ("a.asy", "[SUBSYSTEM]\nUSAGE = '<x>/subsystems.tbl/front.sub'\n", "assembly.*--table front.sub"),
     ("a.foo", "x", "the ending .foo is none of CSV"),
 ]  # fmt: skip
 

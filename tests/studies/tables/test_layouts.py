@@ -1,9 +1,13 @@
 """Layouts of tables that once gave a wrong number without a word: other signs, columns, titles and notes."""
 
+import math
+
 import pytest
 
 from tests.studies.tables.test_car_table import POINTS, WORDS, read, require_points, rows
 from vehicle.errors import VehicleError
+from vehicle.studies.design.template_car import template_car
+from vehicle.studies.tables.car_table import car_table
 
 SHEET = "Hardpoint,x [mm],y [mm],z [mm]\n"
 NUMBERS: dict[str, tuple[str, dict[str, float | None]]] = {
@@ -48,6 +52,70 @@ NUMBERS: dict[str, tuple[str, dict[str, float | None]]] = {
     "car after the points, without a header": (
         SHEET + "Front suspension\n" + rows(WORDS["plain"]) + "\ntyre stiffness,200,N/mm\n",
         {"tyre_stiffness_front": 2e5, "tyre_stiffness_rear": 2e5}),
+    "a row for each axle": (
+        "Axle;Track [mm];Unsprung mass [kg];Spring rate [N/mm];Motion ratio [-]\nFront;1540;90;25;0,95\n"
+        "Rear;1530;80;28;0,8\n",
+        {"track_rear": 1.53, "unsprung_mass_front": 90.0, "wheel_rate_front": 25e3 * 0.95**2,
+         "wheel_rate_rear": 28e3 * 0.64}),
+    "a row for each wheel": (
+        "Rad;Radlast [N];Ungefederte Masse [kg]\nVL;4100;38\nVR;4100;38\nHL;3200;35\nHR;3200;35\n",
+        {"front_axle_load": 8200.0 / 9.81, "rear_axle_load": 6400.0 / 9.81, "unsprung_mass_rear": 70.0}),
+    "a row for the car, units below the header": (
+        "Parameter,mass,wheelbase,track front\nUnit,kg,mm,mm\nValue,1400,2600,1500\n",
+        {"kerb_mass": 1400.0, "wheelbase": 2.6, "track_front": 1.5}),
+    "a row of the laden car first": ("Load case,Mass [kg],CG height [mm]\nLaden,1800,560\nEmpty,1400,540\n",
+                                     {"kerb_mass": 1400.0, "cog_height": 0.54}),
+    "pairs of value and unit": (
+        "Parameter,Front,,Rear,\n,Value,Unit,Value,Unit\nTrack,1540,mm,1.53,m\nWheel rate,25,N/mm,28,kN/m\n",
+        {"track_front": 1.54, "track_rear": 1.53, "wheel_rate_front": 25e3, "wheel_rate_rear": 28e3}),
+    "the car in the column of an axle": ("Item,Front,Rear,Units\nTotal weight,3000,,lb\nTrack,60,59,in\n",
+                                         {"kerb_mass": 3000.0 * 0.45359237, "front_axle_load": None}),
+    "left and right below the axles": (
+        "Parameter;Vorderachse;;Hinterachse;;Einheit\n;links;rechts;links;rechts;\nRadlast;410;412;310;312;kg\n",
+        {"front_axle_load": 822.0, "rear_axle_load": 622.0}),
+    "both axles in a cell": (
+        "Achslasten (v/h);820/630;kg\nFederrate VA / HA;25,0 / 28,5;N/mm\nTrack rear/front;1530 mm / 1540 mm\n",
+        {"front_axle_load": 820.0, "wheel_rate_rear": 28.5e3, "track_front": 1.54, "track_rear": 1.53}),
+    "matrix of inertia": (
+        "mass,1500,kg\n\nInertia tensor [kg m2],x,y,z\nx,500,0,-30\ny,0,2000,0\nz,-30,0,2200\n",
+        {"roll_inertia": 500.0, "pitch_inertia": 2000.0, "yaw_inertia": 2200.0}),
+    "moments in a row": ("mass,1500,kg\nInertia (Ixx Iyy Izz),500,2000,2200,kg m2\n",
+                         {"roll_inertia": 500.0, "pitch_inertia": 2000.0, "yaw_inertia": 2200.0}),
+    "bar rate at the wheel": ("track,1500,mm\nwheel rate front,22,N/mm\nAnti-roll bar rate at wheel front,10,N/mm\n",
+                              {"roll_stiffness_front": math.radians(32e3 * 1.5**2 / 2.0)}),
+    "roll stiffness and its distribution": (
+        "track,1500,mm\nTotal roll stiffness,1600,Nm/deg\nRoll stiffness distribution front,60,%\n",
+        {"roll_stiffness_front": 960.0, "roll_stiffness_rear": 640.0}),
+    "inverse motion ratio": ("name,value,unit,comment\nspring rate front,40,N/mm,\nmotion ratio front,1.25,-,wheel "
+                             "travel / spring travel\n", {"wheel_rate_front": 40e3 * 0.64}),
+    "both strokes": ("Damping front compression,1000,N s/m\nDamping front rebound,3000,N s/m\n",
+                     {"wheel_damping_front": 2000.0}),
+    "rate with the tyre": ("Wheel rate front (incl. tyre),20,N/mm\nTyre stiffness,200,N/mm\n",
+                           {"wheel_rate_front": 20e3 * 200.0 / 180.0}),
+    "kilogram-force, thousands": ("spring rate front;8;kgf/mm\nspring rate rear;6;kg/mm\nmass;1 450;kg\n"
+                                  "wheelbase;2'600;mm\n",
+                                  {"wheel_rate_front": 8 * 9806.65, "wheel_rate_rear": 6 * 9806.65, "kerb_mass": 1450.0,
+                                   "wheelbase": 2.6}),
+    "limits": ("name,value,unit,comment\nKerb weight,1400,kg,\nzulässiges Gesamtgewicht,1900,kg,\n"
+               "Front axle load (max),1000,kg,\nRear axle load,950,kg,permissible\n"
+               "Front roll stiffness (springs only),500,Nm/deg\n",
+               {"kerb_mass": 1400.0, "front_axle_load": None, "rear_axle_load": None,
+                "roll_stiffness_front": None}),
+    "German compounds": (
+        "Fahrzeuggesamtmasse leer;1450;kg\nVorderachslast;820;kg\nAufbaufedersteifigkeit vorne (radbezogen);24,5;N/mm\n"
+        "Stoßdämpferkonstante vorn;1,8;kNs/m\nReifenvertikalsteifigkeit;205;N/mm\nSchwerpunkthöhe über Boden;545;mm\n"
+        "Nickträgheitsmoment;2100;kgm²\nStatischer Reifenhalbmesser;302;mm\nLehrsches Dämpfungsmaß hinten;0,3;-\n",
+        {"front_axle_load": 820.0, "wheel_rate_front": 24.5e3, "wheel_damping_front": 1800.0, "cog_height": 0.545,
+         "tyre_stiffness_rear": 205e3, "pitch_inertia": 2100.0, "tyre_radius": 0.302}),
+    "script": ("% car\nm = 1400; % kg\nmuf = 80; % kg, axle\nL = 2.6; % wheelbase [m]\nksf=25000; % N/m\n",
+               {"kerb_mass": 1400.0, "unsprung_mass_front": 80.0, "wheelbase": 2.6, "wheel_rate_front": 25e3}),
+    "quarter car": ("Quarter car\nSprung mass,300,kg\nUnsprung mass,40,kg\nwheelbase,2.6,m\n",
+                    {"kerb_mass": 1360.0, "unsprung_mass_rear": 80.0}),
+    "below a title of corners": ("Corner weights\nFL,410,kg\nTotal mass,1450,kg\n", {"kerb_mass": 1450.0}),
+    "lumped model": ("ms,1200,kg\nmuf,80,kg\nmur,70,kg\na,1.1,m\nb,1.5,m\n",
+                     {"cog_x": round((1200 * 1.1 + 70 * 2.6) / 1350.0, 6), "unsprung_mass_rear": 70.0}),
+    "rows that are counted": ("1;Kerb mass;1400;kg\n2;Wheelbase;2600;mm\n3;Track front;1540;mm\n",
+                              {"kerb_mass": 1400.0, "track_front": 1.54}),
 }  # fmt: skip
 
 
@@ -61,9 +129,11 @@ def test_numbers_of_a_layout(case, tmp_path):
 
 
 def test_further_values_of_a_row_are_left_out_by_name(tmp_path):
-    table = read(tmp_path, "Parameter,Unladen,Laden,Unit\nTotal mass,1400,1800,kg\n", name="car.csv")
+    table = read(tmp_path, "Parameter,Car A,Car B,Unit\nTotal mass,1400,1800,kg\n", name="car.csv")
     assert table.numbers["kerb_mass"] == 1400.0
     assert any("further values 1800" in text for _, text in table.left_out)
+    table = read(tmp_path, "Parameter,Laden,Unladen,Unit\nTotal mass,1800,1400,kg\n", name="car.csv")
+    assert table.numbers["kerb_mass"] == 1400.0 and any("'Laden'" in text for _, text in table.left_out)
 
 
 def test_a_motion_ratio_above_one_is_a_guess(tmp_path):
@@ -103,6 +173,30 @@ def test_both_axles_beside_each_other(head, tmp_path):
     assert table.points["rear"]["damper_upper"] == pytest.approx((0.03, 0.56, 0.56), abs=1e-9)
 
 
+VECTORS = ("{};({}, {}, {})\n", "{};{}/{}/{}\n", "{} = [{} {} {}]; % mm\n")
+
+
+@pytest.mark.parametrize("form", VECTORS)
+def test_three_coordinates_in_a_cell(form, tmp_path):
+    lines = [form.format(name, *(f"{1e3 * value:.3f}" for value in at))
+             for name, at in zip(WORDS["plain"], POINTS.values(), strict=True)]  # fmt: skip
+    require_points(read(tmp_path, "axes: adams, mm\n" + "".join(lines)))
+
+
+def test_rods_of_an_axle_of_five_links(tmp_path):
+    rods = {"upper trailing link wheel side": "trailing_upper_outer",
+            "lower trailing link body": "trailing_lower_inner",
+            "upper lateral link inner": "upper_inner", "upper lateral link outer": "upper_outer",
+            "toe link outer": "lower_front_outer", "lower front link inner": "lower_front_inner",
+            "spring link outer": "lower_rear_outer"}  # fmt: skip
+    lines = [f"{name},{2.6 + 0.01 * n},{0.7 - 0.02 * n},{0.3 + 0.03 * n}" for n, name in enumerate(rods)]
+    text = "axes: adams\nRear axle,x [m],y [m],z [m]\nwheel centre,2.6,0.75,0.3\n" + "\n".join(lines) + "\n"
+    (tmp_path / "car.csv").write_text(text)
+    table = car_table([tmp_path / "car.csv"], template_car("focus_road").point_names)
+    for n, name in enumerate(rods.values()):
+        assert table.points["rear"][name] == pytest.approx((0.01 * n, 0.7 - 0.02 * n, 0.03 * n), abs=1e-9), name
+
+
 def test_german_words_of_axes_and_origin(tmp_path):
     text = ("Achsen: x nach hinten, y nach rechts, z nach oben; Ursprung Vorderachse\nPunkt,x [mm],y [mm],z [mm]\n"
             "Radmitte hinten,2700,750,300\nFederbein oben hinten,2730,570,860\n")  # fmt: skip
@@ -110,7 +204,66 @@ def test_german_words_of_axes_and_origin(tmp_path):
     assert table.points["rear"]["damper_upper"] == pytest.approx((0.03, 0.57, 0.56), abs=1e-9)
 
 
+BUSHINGS = {
+    "words": "Bushing,Axle,Translational stiffness x [N/mm],stiffness y,stiffness z,Preload [N]\n"
+             "LCA rear,front,800,900,500,7\n",
+    "unit in a column": "Lager;Kx;Ky;Kz;Einheit\nvorn Querlenker hinten;800;900;500;N/mm\n",
+    "unit in the title": "Bushing stiffness (N/mm),x,y,z\nfront lower arm rear,800,900,500\n",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BUSHINGS)
+def test_bushings_of_a_layout(case, tmp_path):
+    table = read(tmp_path, BUSHINGS[case], name="car.csv")
+    assert table.parameters["front", "bushings.arm_rear.stiffness"][0] == [8e5, 9e5, 5e5]
+    assert ("Preload" in BUSHINGS[case]) == any("Preload" in text for _, text in table.left_out)
+
+
+SHARES = ("distribution,55/45,%", "distribution F:R,55:45", "distribution,55 % front", "distribution,45 % rear",
+          "distribution,55% front / 45% rear", "distribution rear/front,45/55,%")  # fmt: skip
+
+
+@pytest.mark.parametrize("share", SHARES)
+def test_a_mass_distribution_as_text(share, tmp_path):
+    table = read(tmp_path, f"mass,1500,kg\nWeight {share}\n", name="car.csv")
+    assert table.numbers["front_axle_load"] == pytest.approx(825.0, rel=1e-12)
+
+
+STROKES = [(-0.5, -500.0), (-0.1, -200.0), (0.1, 400.0), (0.5, 1200.0)]
+CURVES = {
+    "strokes": "Damper front\nv [mm/s],Rebound [N],Compression [N]\n100,400,200\n500,1200,500\n",
+    "negative strokes": "Damper front\nv [m/s],compression [N],rebound [N]\n-0.1,-200,-400\n-0.5,-500,-1200\n",
+    "velocities along a row": "Damper front,,\nVelocity [mm/s],100,500\nRebound [N],400,1200\n"
+                              "Compression [N],200,500\n",
+    "axles": "v [m/s],F rear [N],F front [N]\n-0.5,-1,-500\n-0.1,-1,-200\n0.1,1,400\n0.5,1,1200\n",
+    "axles and strokes": "v [m/s],front rebound [N],front compression [N],rear rebound [N],rear compression [N]\n"
+                         "0.1,400,200,1,1\n0.5,1200,500,1,1\n",
+    "force first": "Dämpfer vorn\nKraft [daN];Geschwindigkeit [m/s]\n-50;-0,5\n-20;-0,1\n40;0,1\n120;0,5\n",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CURVES)
+def test_damper_curves_of_a_layout(case, tmp_path):
+    table = read(tmp_path, CURVES[case], name="car.csv")
+    assert [value for row in table.curves["front"] for value in row] == pytest.approx(
+        [value for row in STROKES for value in row], rel=1e-12
+    )
+
+
 BAD = {
+    "several forces of a damper": (
+        "Damper front\nv [m/s],force 0 A [N],force 1 A [N]\n-0.1,-2,-4\n0.1,2,4\n",
+        "several columns of force",
+    ),
+    "shares": ("mass,1400,kg\nWeight distribution,55/55,%\n", "sum up to 1.1"),
+    "matrix": ("mass,1400,kg\n\nInertia [kg m2],x,y,z\nx,500,0,-30\ny,0,2000,0\nz,30,0,2200\n", "not symmetric"),
+    "US units": ("Units: US customary\nmass,3200\nwheelbase,2600,mm\n", "states 'US customary'"),
+    "heave of an axle or a wheel": ("Heave stiffness front,40,kN/m\n", "of a wheel or of both"),
+    "sprung mass of an axle or a wheel": (
+        "sprung mass front,400,kg\nunsprung mass front axle,80,kg\n",
+        "of a wheel or of an axle",
+    ),
+    "one stroke": ("Damping front rebound,3000,N s/m\n", "of one stroke"),
     "all wheels": ("Total unsprung mass,90,kg\n", "of an axle or of all wheels"),
     "all wheels by size": ("Unsprung mass,160,kg\n", "of an axle or of all wheels"),
     "points of two meanings": ("mass;1.400;kg\nwheelbase;2,6;m\ntrack;1.5;m\n", "thousand or a decimal"),

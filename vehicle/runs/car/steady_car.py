@@ -28,9 +28,9 @@ class SteadyCar(BandedCar):
 
         Args:
             record: measurement file with accelerations at points of the car.
-            speed: speed [km/h], lower and upper speed, or "channel:NAME".
-            settings: `channels` {channel of the car: channel of the file}, `choice`, `inverted`, `free`, `parts`,
-                `count`, `seed`, `progress`; see `vehicle.studies.diagnosis.diagnosis.diagnose_car`.
+            speed: speed [km/h], lower and upper speed, "channel:NAME", or "position:LATITUDE,LONGITUDE".
+            settings: `channels` {channel of the car: channel of the file}, `choice`, `inverted`, `free`, `forward`,
+                `parts`, `count`, `seed`, `progress`; see `vehicle.studies.diagnosis.diagnosis.diagnose_car`.
         """
         return HANDED["diagnose_car"](self, record, speed, **settings)
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
+from vehicle.signals.formats.shipped_record import find_record
 from vehicle.wording import did_you_mean
 
 INPUT_FOLDER = Path(__file__).resolve().parents[1] / "inputs"
@@ -10,12 +11,12 @@ INPUT_FOLDER = Path(__file__).resolve().parents[1] / "inputs"
 
 
 def find_input(name: str | Path) -> Path:
-    """Return the path of an existing file, else of the shipped input with this name.
+    """Return the path of an existing file, else of the shipped input or record with this name.
 
     Raises:
         ConfigurationError: neither exists; the message lists the names of the shipped inputs.
     """
-    path = Path(name)
+    path = find_record(name)
     if path.is_file():
         return path
     if path.exists():

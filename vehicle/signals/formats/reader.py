@@ -11,6 +11,7 @@ from vehicle.signals.formats.clock import check_increasing, check_stamps, check_
 from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.formats import recognised_format
 from vehicle.signals.formats.mixed_sources import check_cycles
+from vehicle.signals.formats.shipped_record import find_record
 from vehicle.signals.formats.table import TIME, Record, Wanted, key_column, name_and_unit
 from vehicle.signals.formats.table_file import read_table
 
@@ -22,7 +23,7 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
     """Read all channels of a measurement file.
 
     Args:
-        path: measurement file of any format of `vehicle.signals.formats.formats`.
+        path: measurement file of any format of `vehicle.signals.formats.formats`, or the name of a shipped record.
         databases: DBC files that decode the log of a CAN bus.
 
     Returns:
@@ -33,7 +34,7 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
         DataError: an unsupported format, or a damaged file.
         MissingPartError: a library of the format is not installed; the message names the extra.
     """
-    file = Path(path)
+    file = find_record(path)
     recognised = recognised_format(file)
     if databases and not recognised.databases:
         raise ConfigurationError(

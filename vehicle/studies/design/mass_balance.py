@@ -122,15 +122,21 @@ def template_indices(template: TemplateCar, before: MassProperties) -> tuple[flo
 
 
 def _inertia(template: TemplateCar, stated: StatedNumbers, before: MassProperties, mass: float, share: float) -> Vector:
-    """Return the inertia tensor of the new car about its CoG: stated or estimated moments; products of the template."""
+    """Return the inertia tensor of the new car about its CoG: stated or estimated moments; products of the template.
+
+    Of pitch and yaw, one that is stated scales the estimate of the other: both are sums of m x^2 along the car.
+    """
     tracks = [stated.of_axle("track", word) or template.track(word) for word in template.wheels]
     wheelbase = stated.wheelbase or template.wheelbase
     geometry = AxleGeometry(track=float(np.mean(tracks)), front=share * wheelbase, rear=(1.0 - share) * wheelbase)
     of_survey = [index.mean for index in SURVEY.values()]
     indices = of_survey if stated.inertia == "survey" else template_indices(template, before)
     names = ("roll_inertia", "pitch_inertia", "yaw_inertia")
-    estimates = zip(names, geometry.inertia(mass, indices), strict=True)
-    moments = [getattr(stated, name) or value for name, value in estimates]
+    roll, pitch, yaw = geometry.inertia(mass, indices)
+    if (stated.pitch_inertia is None) != (stated.yaw_inertia is None):
+        scale = stated.pitch_inertia / pitch if stated.pitch_inertia else (stated.yaw_inertia or yaw) / yaw
+        pitch, yaw = scale * pitch, scale * yaw
+    moments = [getattr(stated, name) or value for name, value in zip(names, (roll, pitch, yaw), strict=True)]
     return mass / before.mass * (before.inertia - np.diag(np.diag(before.inertia))) + np.diag(moments)
 
 
@@ -187,6 +193,9 @@ def _sources(template: TemplateCar, stated: StatedNumbers, parts: float, of_temp
     for axis, (name, estimate) in zip(
         ("ixx", "iyy", "izz"), zip(("roll", "pitch", "yaw"), estimates, strict=True), strict=True
     ):
+        other = {"pitch": "yaw", "yaw": "pitch"}.get(name, "")
+        if other and getattr(stated, f"{other}_inertia") is not None:
+            estimate = f"estimated: scaled with {other} inertia"
         sources[f"body.inertia.{axis}"] = f"{source(f'{name}_inertia', otherwise=estimate)}; less the other parts"
     for product in ("ixy", "izx", "iyz"):
         sources[f"body.inertia.{product}"] = (

@@ -351,6 +351,9 @@ def _origin(name: str, template: TemplateCar, stated: StatedNumbers, ratio: floa
     if name not in RIDE_ORDER or _is_stated(stated, name):
         return "the other numbers"
     if name.endswith("inertia"):
+        other = {"pitch_inertia": "yaw_inertia", "yaw_inertia": "pitch_inertia"}.get(name, "")
+        if other and getattr(stated, other) is not None:
+            return f"scaled with {other.replace('_', ' ')}"
         return "means of 73 cars" if stated.inertia == "survey" else f"{template.name}, same radius of gyration"
     scaled = ratio != 1.0 and name.startswith(("wheel_hop", "roll_stiffness"))
     return f"{template.name}, parts scaled with the kerb mass" if scaled else template.name

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from vehicle.studies.design.template_car import TemplateCar
-from vehicle.studies.tables.car_table import CarTable
+from vehicle.studies.tables.car_table import BUSHINGS, PARTS, CarTable
 
 if TYPE_CHECKING:
     from vehicle.studies.design.new_car import NewCar
@@ -29,6 +29,10 @@ def table_lines(result: "NewCar", template: TemplateCar, source: CarTable) -> It
             # "axle": an unsprung mass without it may be of a wheel.
             name = check.name.replace("unsprung_mass", "unsprung_mass_axle")
             yield f"{name},,{check.value:.9g},{check.unit}"
+    # The radius follows from these two, which have no check.
+    for name, unit in (("tyre_free_radius", "m"), ("tyre_size", "")):
+        if name in source.numbers:
+            yield f"{name},,{source.numbers[name]},{unit}"
     yield ""
     yield ",".join(POINT_HEAD)
     for word, points in source.points.items():
@@ -36,8 +40,24 @@ def table_lines(result: "NewCar", template: TemplateCar, source: CarTable) -> It
         center = template.wheels[word][0].paths[0].rpartition(".")[2]
         for name in dict.fromkeys((center, *points)):
             yield ",".join((name, word, *(f"{value:.6f}" for value in placed[name])))
+    yield from _parameter_lines(source)
     for word, rows in source.curves.items():
         yield from ("", f"damper {word}", "velocity [m/s],force [N]", *(f"{v:.9g},{f:.9g}" for v, f in rows))
+
+
+def _parameter_lines(source: CarTable) -> Iterable[str]:
+    """Yield the lines of masses of parts, tyre damping and bushings."""
+    parts = {name: words for words, names in PARTS.items() for name in names}
+    bushings = {name: key for key, names in BUSHINGS.items() for name in names}
+    for (word, path), (value, _) in source.parameters.items():
+        section, name, *_ = path.split(".")
+        if section == "bushings":
+            letter, unit = ("k", "N/m") if path.endswith("stiffness") else ("c", "N s/m")
+            yield from ("", f"bushing,axle,{','.join(f'{letter}{axis} [{unit}]' for axis in 'xyz')}")
+            yield f"{bushings[name]},{word},{','.join(f'{part:.9g}' for part in value)}"
+        else:
+            text, unit = (f"{parts[name]} mass", "kg") if section == "parts" else ("tyre damping", "N s/m")
+            yield from ("", "name,axle,value,unit", f"{text},{word},{value:.9g},{unit}")
 
 
 def car_points(result: "NewCar", template: TemplateCar, word: str) -> dict[str, tuple[float, float, float]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -12,8 +11,11 @@ import numpy as np
 from vehicle.digits import aligned, number
 from vehicle.names import side_of
 from vehicle.signals.analysis.road_level import CLASS_WIDTH, CLASSES
+from vehicle.signals.formats.csv_table import table_text
 from vehicle.studies.diagnosis.drive_record import Parts
+from vehicle.studies.diagnosis.driven_modes import DrivenMode
 from vehicle.studies.diagnosis.learned import Posterior
+from vehicle.studies.diagnosis.roughness import RoadPiece
 
 WORN, GOOD = 0.6, 0.8
 """Factors of the force of a damper [-]: below the first it counts as worn, above the second as good."""
@@ -26,6 +28,9 @@ TELLS = 0.85
 
 INTERVAL = (0.05, 0.95)
 """Ends of the printed intervals: 90 % lie inside."""
+
+ENDS = ("median", "low", "high")
+"""Names of the median and of the ends of an interval in JSON."""
 
 LIKELIEST = 0.99
 """Largest printed probability: a thousand drives resolve no more."""
@@ -65,6 +70,8 @@ class CarDiagnosis:
         shown: groups of unknowns for the table, of `GROUPS`.
         drives: number of simulated drives.
         more: change of the test that narrows the intervals of the dampers, and the ratio of widths [-].
+        modes: modes of the driven car.
+        road_pieces: roughness index of the road in pieces of 100 m, by distance; none for an unknown speed.
         notices: messages on the record.
     """
 
@@ -79,6 +86,8 @@ class CarDiagnosis:
     shown: tuple[str, ...]
     drives: int
     more: Mapping[str, float]
+    modes: tuple[DrivenMode, ...] = ()
+    road_pieces: tuple[RoadPiece, ...] = ()
     notices: tuple[str, ...] = ()
 
     def damper(self, wheel: str) -> Posterior:
@@ -102,6 +111,12 @@ class CarDiagnosis:
         return RoadClass(letter, shares[letter], low, high)
 
     @property
+    def roughness(self) -> tuple[float, float, float]:
+        """Return median and 90 % interval of the international roughness index of the road [m/km]."""
+        middle, low, high = (10.0**each for each in _quantiles(self.unknowns["roughness"]))
+        return middle, low, high
+
+    @property
     def answer(self) -> str:
         """Return a sentence for each worn, undecided or undetermined damper, and a sentence for the other dampers."""
         healthy = [wheel for wheel in self.wheels if self.worn(wheel) <= 1.0 - SURE]
@@ -111,7 +126,7 @@ class CarDiagnosis:
         for wheel in sorted(below, key=self.worn, reverse=True):
             undecided = "" if self.worn(wheel) >= SURE else "undecided, "
             sentences.append(
-                f"{self._title(wheel)}: {undecided}{_percent(self.worn(wheel))} likely below {100.0 * WORN:.0f} % of "
+                f"{self._title(wheel)}: {undecided}{percent(self.worn(wheel))} likely below {100.0 * WORN:.0f} % of "
                 f"nominal ({_interval(self.damper(wheel))})."
             )
         if unclear:
@@ -131,7 +146,7 @@ class CarDiagnosis:
         certain = limits[missed <= 1.0 - TOGETHER]
         limit, share = (certain[-1], TOGETHER) if certain.size else (WORN, 1.0 - missed[0])
         verb = "is" if len(healthy) == 1 else "are"
-        return f"{who} {verb} above {100.0 * limit:.0f} % ({_percent(float(share))} likely)."
+        return f"{who} {verb} above {100.0 * limit:.0f} % ({percent(float(share))} likely)."
 
     def _title(self, wheel: str) -> str:
         """Return the damper of a wheel in words: "Rear left damper"."""
@@ -144,7 +159,7 @@ class CarDiagnosis:
         rows = []
         for name, posterior in self.unknowns.items():
             if name.startswith(first_words):
-                low, middle, high = (posterior.quantile(share) for share in (INTERVAL[0], 0.5, INTERVAL[1]))
+                middle, low, high = _quantiles(posterior)
                 row = {"unknown": name, "median": middle, "low": low, "high": high}
                 row |= {"below_60_percent": posterior.below(WORN), "above_80_percent": 1.0 - posterior.below(GOOD)}
                 rows.append(row | {"told": told(posterior)})
@@ -153,12 +168,19 @@ class CarDiagnosis:
     @property
     def csv(self) -> str:
         """Return the table as CSV."""
-        rows, file = self.rows, io.StringIO()
-        file.write(",".join(rows[0]) + "\n")
-        for row in rows:
-            cells = (f"{value:.4f}" if isinstance(value, float) else str(value) for value in row.values())
-            file.write(",".join(cells) + "\n")
-        return file.getvalue()
+        rows = self.rows
+        cells = [[f"{value:.4f}" if isinstance(value, float) else str(value) for value in row.values()] for row in rows]
+        return table_text([[*rows[0]], *cells])
+
+    @property
+    def roughness_csv(self) -> str:
+        """Return the roughness index of every 100 m as CSV."""
+        heads = ("from [m]", "to [m]", "from [s]", "to [s]", "IRI [m/km]", "low [m/km]", "high [m/km]")
+        rows = [
+            (piece.start[0], piece.end[0], piece.start[1], piece.end[1], *_quantiles(piece.index))
+            for piece in self.road_pieces
+        ]
+        return table_text([heads, *rows], digits=4)
 
     def summary(self) -> dict[str, Any]:
         """Return all results as an object of JSON."""
@@ -175,7 +197,26 @@ class CarDiagnosis:
             "as_unlike": self.unlikely,
             "widened": self.widened,
             "unknowns": self.rows,
-            "road": {"class": road.letter, "probability": road.probability, "density_m3": [road.low, road.high]},
+            "road": {
+                "class": road.letter,
+                "probability": road.probability,
+                "density_m3": [road.low, road.high],
+                "iri_m_per_km": dict(zip(ENDS, self.roughness, strict=True)),
+                "iri_every_100_m": [
+                    {"from_m": piece.start[0], "to_m": piece.end[0]}
+                    | dict(zip(ENDS, _quantiles(piece.index), strict=True))
+                    for piece in self.road_pieces
+                ],
+            },
+            "modes": [
+                {
+                    "mode": self._mode_title(mode),
+                    "frequency_hz": [10.0**each for each in _quantiles(mode.frequency)],
+                    "damping_ratio": list(_quantiles(mode.damping)),
+                    "good_dampers": {"frequency_hz": mode.nominal.frequency, "damping_ratio": mode.nominal.damping},
+                }
+                for mode in self.modes
+            ],
             "narrower_with": dict(self.more),
             "in_no_record": CANNOT,
             "notices": list(self.notices),
@@ -188,8 +229,7 @@ class CarDiagnosis:
     def __str__(self) -> str:
         """Return sentences, table, road class, used parts and fit."""
         parts, road = self.parts, self.road
-        slow, fast = (3.6 * speed for speed in parts.speeds)
-        speed = f"{slow:.0f} km/h" if fast - slow < 1.0 else f"{slow:.0f} to {fast:.0f} km/h"
+        speed = speed_words([3.6 * speed for speed in parts.speeds])
         left_out = ", ".join(f"{reason} {number(seconds)} s" for reason, seconds in parts.left_out.items())
         more = "; ".join(f"{change}: intervals {number(ratio, 2)} times as wide" for change, ratio in self.more.items())
         widened = f"; intervals are {number(self.widened, 2)} times as wide for that" if self.widened > 1.0 else ""
@@ -198,8 +238,10 @@ class CarDiagnosis:
             "",
             *self._table(),
             "",
-            f"road: class {road.letter} ({_percent(road.probability)} likely), G(0.1 cycles/m) "
-            f"{number(1e6 * road.low, 2)} to {number(1e6 * road.high, 2)} 1e-6 m3",
+            *self._mode_table(),
+            "",
+            f"road: class {road.letter} ({percent(road.probability)} likely), G(0.1 cycles/m) "
+            f"{number(1e6 * road.low, 2)} to {number(1e6 * road.high, 2)} 1e-6 m3; {self._roughness_words()}",
             f"used: {number(parts.seconds)} s of {self.record} at {speed} in {len(parts.spans)} "
             f"part{'s' * (len(parts.spans) > 1)}{f' (left out: {left_out})' if left_out else ''}, "
             f"{len(self.channels)} channels",
@@ -221,9 +263,36 @@ class CarDiagnosis:
                     row["unknown"],
                     f"{row['median']:.2f}",
                     f"{row['low']:.2f} to {row['high']:.2f}",
-                    *(_percent(share) if damper else "" for share in shares),
+                    *(percent(share) if damper else "" for share in shares),
                     "" if row["told"] else "undetermined",
                 )
+            )
+        return aligned(cells)
+
+    def _roughness_words(self) -> str:
+        """Return the roughness index in words, with the range of its pieces."""
+        middle, low, high = (number(each, 2) for each in self.roughness)
+        pieces = [piece.index.quantile(0.5) for piece in self.road_pieces]
+        over = f", {number(min(pieces), 2)} to {number(max(pieces), 2)} over 100 m" if len(pieces) > 1 else ""
+        return f"IRI {middle} m/km ({low} to {high}){over}"
+
+    def _mode_title(self, mode: DrivenMode) -> str:
+        """Return the name of a mode: "body heave", "rear left wheel hop"."""
+        hop, _, wheel = mode.motion.partition(" ")
+        return f"{side_of(wheel, self.wheels)} wheel hop" if hop == "hop" else mode.motion
+
+    def _mode_table(self) -> list[str]:
+        """Return the table of the modes as lines."""
+        heads = ("mode", "frequency [Hz]", "90 % interval", "damping [%]", "90 % interval", "with good dampers")
+        cells = [heads]
+        for mode in self.modes:
+            (f, f_low, f_high), (d, d_low, d_high) = _quantiles(mode.frequency), _quantiles(mode.damping)
+            frequency = [f"{10.0**each:#.3g}" for each in (f, f_low, f_high)]
+            damping = [f"{100.0 * each:.0f}" for each in (d, d_low, d_high)]
+            nominal = f"{mode.nominal.frequency:#.3g} Hz, {100.0 * mode.nominal.damping:.0f} %"
+            middle, interval = frequency[0], f"{frequency[1]} to {frequency[2]}"
+            cells.append(
+                (self._mode_title(mode), middle, interval, damping[0], f"{damping[1]} to {damping[2]}", nominal)
             )
         return aligned(cells)
 
@@ -233,10 +302,22 @@ def told(posterior: Posterior) -> bool:
     return posterior.deviation <= TELLS * posterior.prior
 
 
-def _percent(share: float) -> str:
+def speed_words(speeds: Sequence[float]) -> str:
+    """Return the least and the greatest speed [km/h] as text, a single number if they are nearly equal."""
+    slow, fast = speeds
+    return f"{slow:.0f} km/h" if fast - slow < 1.0 else f"{slow:.0f} to {fast:.0f} km/h"
+
+
+def percent(share: float) -> str:
+    """Return a probability in percent, at most `LIKELIEST`."""
     return f"{100.0 * min(max(share, 1.0 - LIKELIEST), LIKELIEST):.0f} %"
 
 
+def _quantiles(posterior: Posterior) -> tuple[float, float, float]:
+    """Return the median and both ends of the 90 % interval."""
+    return posterior.quantile(0.5), posterior.quantile(INTERVAL[0]), posterior.quantile(INTERVAL[1])
+
+
 def _interval(posterior: Posterior) -> str:
-    low, high = (posterior.quantile(end) for end in INTERVAL)
+    _, low, high = _quantiles(posterior)
     return f"{low:.2f} to {high:.2f}"

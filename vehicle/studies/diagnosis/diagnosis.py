@@ -22,12 +22,15 @@ from vehicle.names import in_order
 from vehicle.runs.car import Car
 from vehicle.signals.records.choice import Choice
 from vehicle.studies.diagnosis.car_diagnosis import GROUPS, CarDiagnosis
+from vehicle.studies.diagnosis.device_axes import oriented
 from vehicle.studies.diagnosis.drawn_car import CarPrior
-from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts, read_drive, upright, usable_parts
+from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts, read_drive, usable_parts
+from vehicle.studies.diagnosis.driven_modes import ModeFit
 from vehicle.studies.diagnosis.features import Bands, related_pairs, rows_of_points
 from vehicle.studies.diagnosis.learned import Learned
 from vehicle.studies.diagnosis.record_gain import GainTest
-from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, Drives, simulated_drives
+from vehicle.studies.diagnosis.roughness import road_pieces
+from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, Drives, nominal_modes, simulated_drives
 
 DRIVES, MORE_DRIVES = 1200, 1440
 """Simulated drives for a known speed, and for a range of speeds."""
@@ -66,6 +69,8 @@ class Diagnostics:
         learned: regression of the unknowns over the features.
         gain_test: regression of the common gain of all sensors.
         at_wheels: the same regression with sensors at all wheels and strut tops; None for a car without these points.
+        modes: regression of the modes.
+        prior: cars at the middle speed.
     """
 
     car: str
@@ -76,6 +81,8 @@ class Diagnostics:
     learned: Learned = field(repr=False)
     gain_test: GainTest = field(repr=False)
     at_wheels: Learned | None = field(repr=False)
+    modes: ModeFit = field(repr=False)
+    prior: CarPrior = field(repr=False)
 
     @classmethod
     def of(
@@ -129,6 +136,8 @@ class Diagnostics:
             learned=Learned(simulated.features[0], simulated.values, TOGETHER),
             gain_test=GainTest(simulated.features[0], len(channels) * Bands.COUNT, TOGETHER),
             at_wheels=Learned(simulated.features[1], simulated.values, TOGETHER) if at_wheels else None,
+            modes=ModeFit(simulated.features[0], simulated.modes, simulated.of("level"), TOGETHER),
+            prior=priors[len(priors) // 2],
         )
 
     def features(self, record: DriveRecord, parts: Parts) -> Vector:
@@ -163,12 +172,17 @@ class Diagnostics:
             )
         excess = max(0.0, WIDENING * (unlike - USUAL), GAIN_WIDENING * (gain.apart - SURE_GAIN))
         widened = float(np.exp(excess))
+        unknowns = dict(zip(self.drives.names, self.learned.posteriors(features, widened), strict=True))
+        speed, level, waviness = (unknowns[name].quantile(0.5) for name in ("speed", "level", "waviness"))
+        nominal = nominal_modes(self.prior, speed, 10.0**level, waviness)
         return CarDiagnosis(
             record=record.name,
             car=self.car,
             channels=self.channels,
             parts=parts,
-            unknowns=dict(zip(self.drives.names, self.learned.posteriors(features, widened), strict=True)),
+            unknowns=unknowns,
+            modes=self.modes.modes(features, widened, nominal),
+            road_pieces=road_pieces(self.drives.pieces, unknowns["roughness"], record, parts, self.highest),
             wheels=in_order(name.removeprefix("damper ") for name in self.drives.names if name.startswith("damper ")),
             unlikely=float(np.mean(self.learned.unlike >= unlike)),
             widened=widened,
@@ -228,6 +242,7 @@ def diagnose_car(
     choice: Choice | None = None,
     inverted: Collection[str] = (),
     free: Sequence[str] = (),
+    forward: str = "",
     parts: Sequence[str] = ("dampers",),
     count: int | None = None,
     seed: int = 1,
@@ -237,13 +252,15 @@ def diagnose_car(
 
     Args:
         car: car that is not worn.
-        record: measurement file of any format, with accelerations at points of the car.
-        speed: speed [km/h], lower and upper speed, or "channel:NAME".
+        record: measurement file of any format, with accelerations at points of the car, or the name of a shipped one.
+        speed: speed [km/h], lower and upper speed, "channel:NAME", or "position:LATITUDE,LONGITUDE".
         channels: channel of the model to channel of the file; by default equal names.
         choice: units, times and excerpt of the file.
         inverted: channels measured in the opposite direction.
         free: points with a device in any direction, for example ("seat_rail",); x, y and z are axes of the device,
             and the record contains gravity.
+        forward: axis of these devices that points forward, for example "y" or "-z"; unknown by default, then it
+            follows from the changes of a recorded speed.
         parts: groups of unknowns for the table, of `GROUPS`.
         count: number of simulated drives; by default 1200, and 1440 for a range of speeds.
         seed: seed of the simulated drives.
@@ -253,14 +270,13 @@ def diagnose_car(
         ConfigurationError: a wrong argument, or a car with controlled dampers.
         DataError: bad data, less than 16 s of steady drive, or a record that cannot be of this car.
     """
-    unknown = next((name for name in parts if name not in GROUPS), None)
-    if unknown is not None:
-        raise ConfigurationError(f"--parts {unknown}: must be one or more of {','.join(GROUPS)}")
+    wrong = next((name for name in parts if name not in GROUPS), None)
+    if wrong is not None:
+        raise ConfigurationError(f"--parts {wrong}: must be one or more of {','.join(GROUPS)}")
     asked = choice or Choice()
     asked = replace(asked, channels={**asked.channels, **(channels or {})})
     drive = _main_channels(car, read_drive(Path(record), car.vehicle.acceleration_channels, speed, asked, inverted))
-    for point in free:
-        drive = upright(drive, point)
+    drive, unknown = oriented(drive, free, forward)
     usable = usable_parts(drive)
     diagnostics = Diagnostics.of(
         car,
@@ -268,7 +284,7 @@ def diagnose_car(
         usable.speeds,
         usable.seconds,
         highest=min(drive.highest, 0.4 * RATE),
-        free=free,
+        free=unknown,
         count=count,
         seed=seed,
         progress=progress,

@@ -1,4 +1,4 @@
-"""Files of a diagnosis: its summary, the table, and the picture of the dampers."""
+"""Files of a diagnosis: its summary, the tables of unknowns and of the road, and the picture of the dampers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from vehicle.studies.diagnosis.drawn_car import STRONGEST, WEAKEST
 CLASSES = 38
 """Classes of the histograms: of 2.5 % of the nominal force."""
 
-SUMMARY, TABLE, PICTURE = "diagnosis.json", "diagnosis.csv", "diagnosis.png"
+SUMMARY, TABLE, ROUGHNESS, PICTURE = "diagnosis.json", "diagnosis.csv", "diagnosis_iri.csv", "diagnosis.png"
 """Names of the files."""
 
 
@@ -31,6 +31,8 @@ def contents(diagnosis: CarDiagnosis, *, figures: bool = True) -> dict[str, Cont
         SUMMARY: json.dumps(diagnosis.summary(), indent=2, allow_nan=False) + "\n",
         TABLE: diagnosis.csv,
     }
+    if diagnosis.road_pieces:
+        files[ROUGHNESS] = diagnosis.roughness_csv
     if figures:
         shapes = [_shape(diagnosis, wheel) for wheel in diagnosis.wheels]
         caption = f"points: medians; bars: 90 % intervals; dashed: {100.0 * WORN:.0f} % of the nominal force"

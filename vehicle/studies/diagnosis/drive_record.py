@@ -16,12 +16,11 @@ import scipy
 
 from vehicle.arrays import Vector
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.excitation.recorded_road import PREFIX
 from vehicle.signals.formats.reader import read_record
-from vehicle.signals.formats.units import STANDARD_GRAVITY
-from vehicle.signals.records.choice import Choice, choose
+from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.measured import read_measured
-from vehicle.studies.diagnosis.features import HIGHEST, LOWEST, WINDOW_S, rows_of_points
+from vehicle.studies.diagnosis.drive_speed import OF_SPEED, recorded_speed
+from vehicle.studies.diagnosis.features import HIGHEST, LOWEST, WINDOW_S
 
 SLOWEST, FASTEST = 20.0, 200.0
 """Speeds of a drive [km/h]: slower, the waves of a road are too short; faster, no road is public."""
@@ -38,9 +37,6 @@ SLOW_BAND = 0.4
 ROUGHER, SMOOTHER, CREST = 3.0, 0.25, 5.5
 """Largest and smallest RMS of a second over the median, and largest peak over the RMS of its window, of half of the
 channels [-]. On a random road the peak of a channel is 3.2 to 5, and the RMS of a second up to 2.3 times the median."""
-
-OFFSET = 0.15
-"""Largest deviation of the mean of a device from gravity [-]: offsets of cheap sensors reach 0.1 g."""
 
 SHORTEST, LONGEST = 16.0, 60.0
 """Least and most time of a record that is used [s]: seven windows, and a minute."""
@@ -100,7 +96,7 @@ def read_drive(
     Args:
         file: record of any format.
         acceleration_channels: accelerations of the model.
-        speed: speed [km/h], range of the speed [km/h], or "channel:NAME".
+        speed: speed [km/h], range of the speed [km/h], "channel:NAME", or "position:LATITUDE,LONGITUDE".
         choice: channel of the model to channel of the file, units and excerpt.
         inverted: channels measured in the opposite direction.
 
@@ -109,7 +105,7 @@ def read_drive(
         DataError: no acceleration, or bad data.
     """
     measurement = read_record(file, choice.databases)
-    of_model = replace(choice, units={name: unit for name, unit in choice.units.items() if name != "speed"})
+    of_model = replace(choice, units={name: unit for name, unit in choice.units.items() if name not in OF_SPEED})
     measured = read_measured(
         file, acceleration_channels, of_model, inverted=inverted, measurement=measurement, histories_only=True
     )
@@ -132,51 +128,9 @@ def read_drive(
                 f"--speed {low:g} to {high:g} km/h: must be {SLOWEST:g} to {FASTEST:g} km/h, the lower first"
             )
         return replace(drive, speeds=(low / 3.6, high / 3.6))
-    name = speed.removeprefix(PREFIX)
-    times = {role: wanted for role, wanted in choice.channels.items() if role == "time"}
-    units = {role: unit for role, unit in choice.units.items() if role in ("speed", "time")}
-    chosen = choose(measurement, Choice(channels={**times, "speed": name}, units=units))
-    if chosen.quantities["speed"] != "velocity":
-        raise DataError(
-            f"{file}: --speed {speed}: the channel is no velocity but {chosen.quantities['speed']}; choose another "
-            "channel, or set --unit speed=km/h"
-        )
-    at_samples = np.interp(record.time, chosen.time, chosen.values["speed"])
-    return replace(drive, speed=at_samples, speeds=(float(at_samples.min()), float(at_samples.max())))
-
-
-def upright(record: DriveRecord, point: str) -> DriveRecord:
-    """Return a record with the axes of a device turned by the smallest angle so that its mean points along z.
-
-    A device at rest measures +g upwards. With the mean direction u and z, the rotation about w = u x z is
-    R = 1 + [w] + [w]^2/(1 + u_z) (Rodrigues).
-
-    Raises:
-        ConfigurationError: the record has not all three axes of the point.
-        DataError: the mean is not gravity.
-    """
-    rows = rows_of_points(record.channels, [point])
-    if not rows:
-        raise ConfigurationError(
-            f"--free {point}: needs all three axes of the point; set --map {point}_acc_x=NAME, also for y and z"
-        )
-    axes = list(rows[0])
-    mean = record.samples[axes].mean(axis=1)
-    length = float(np.linalg.norm(mean))
-    if abs(length / STANDARD_GRAVITY - 1.0) > OFFSET:
-        raise DataError(
-            f"{record.name}: the mean of {point} is {length:.3g} m/s2, but gravity shows the vertical of a device in "
-            f"any direction; give a record with gravity ({STANDARD_GRAVITY:.3g} m/s2), or leave --free out"
-        )
-    x, y, up = mean / length
-    if up < -1.0 + 1e-9:
-        turn = np.diag([1.0, -1.0, -1.0])
-    else:
-        cross = np.array([[0.0, 0.0, -x], [0.0, 0.0, -y], [x, y, 0.0]])
-        turn = np.eye(3) + cross + cross @ cross / (1.0 + up)
-    samples = record.samples.copy()
-    samples[axes] = turn @ samples[axes]
-    return replace(record, samples=samples)
+    at_samples, notices = recorded_speed(measurement, speed, choice, record.time)
+    speeds = float(at_samples.min()), float(at_samples.max())
+    return replace(drive, speed=at_samples, speeds=speeds, notices=(*drive.notices, *notices))
 
 
 def usable_parts(record: DriveRecord) -> Parts:
@@ -200,9 +154,10 @@ def usable_parts(record: DriveRecord) -> Parts:
         near = np.abs(record.speed / middles[:, None] - 1.0) <= STEADY
         usual = middles[int(np.argmax(near.sum(axis=1)))]
         leave_out("another speed", np.abs(record.speed / usual - 1.0) > STEADY)
-    slow = _slow(record)
-    if len(slow):
-        apart = slow - np.median(slow, axis=1, keepdims=True)
+    horizontal = [row for row, name in enumerate(record.channels) if not name.endswith("_z")]
+    if horizontal:
+        accelerations = slow(record.samples[horizontal], record.rate)
+        apart = accelerations - np.median(accelerations, axis=1, keepdims=True)
         leave_out("braking or cornering", np.sqrt(np.sum(apart**2, axis=0)) > LARGEST_SLOW)
     second = max(round(record.rate), 1)
     # Within the bands of the features: beyond them a stiff mount rattles without an obstacle.
@@ -238,11 +193,9 @@ def usable_parts(record: DriveRecord) -> Parts:
     return Parts(spans=tuple(spans), seconds=used, speeds=speeds, left_out=left_out)
 
 
-def _slow(record: DriveRecord) -> Vector:
-    """Return the slow accelerations along x and y; (channels, n)."""
-    rows = [row for row, name in enumerate(record.channels) if not name.endswith("_z")]
-    filtered = scipy.signal.butter(2, SLOW_BAND, fs=record.rate, output="sos")
-    return np.asarray(scipy.signal.sosfiltfilt(filtered, record.samples[rows], axis=1)) if rows else np.zeros((0, 0))
+def slow(values: Vector, rate: float) -> Vector:
+    """Return values below `SLOW_BAND`, (..., n), from values at a rate [Hz]."""
+    return np.asarray(scipy.signal.sosfiltfilt(scipy.signal.butter(2, SLOW_BAND, fs=rate, output="sos"), values))
 
 
 def _runs(good: Vector) -> list[tuple[int, int]]:

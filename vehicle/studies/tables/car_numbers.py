@@ -34,6 +34,12 @@ class _Numbers:
                 return entry.value
         return None
 
+    @property
+    def of_body(self) -> bool:
+        """Return True for a lumped model, whose sprung mass is stated without the mass of the car."""
+        stated = ("kerb_mass", ""), ("axle_load", "front"), ("axle_load", "rear")
+        return ("sprung_mass", "") in self.values and not any(key in self.values for key in stated)
+
     def put(self, name: str, value: float, *rows: tuple[str, str], why: str = "") -> None:
         """Store a number of the car with its rows."""
         self.result.stated[name] = value
@@ -137,6 +143,9 @@ def _masses(table: _Numbers) -> None:
     share = next((table.get("front_share", axle) if axle != "rear" else 1.0 - (table.get("front_share", "rear") or 0.0)
                   for axle in ("front", "", "rear") if ("front_share", axle) in values), None)  # fmt: skip
     table.used |= {("front_share", axle) for axle in ("front", "", "rear")}
+    shares = [values[key].value for axle in AXLES if (key := ("front_share", axle)) in values]
+    if len(shares) == 2 and abs(sum(shares) - 1.0) > AGREE:
+        raise DataError(f"mass distribution: {shares[0]:g} and {shares[1]:g} sum up to {sum(shares):g}; correct one")
     both = loads["front"] is not None and loads["rear"] is not None
     if both and kerb is not None:
         total = (loads["front"] or 0.0) + (loads["rear"] or 0.0)
@@ -170,6 +179,9 @@ def _cog_and_inertia(table: _Numbers, points: Mapping[str, Any]) -> None:
         a = wheelbase - b
     height, sprung_height = table.get("cog_height"), table.get("sprung_cog_height")
     sprung_a = table.get("sprung_cog_x", "front")
+    if table.of_body and sprung_a is None and sprung_height is None and (a is not None or height is not None):
+        table.guess("sprung_mass", "", "centre of gravity: of the sprung mass, whose mass is stated alone")
+        a, height, sprung_a, sprung_height = None, None, a, height
     cog = points.get("cog")
     if cog is not None:
         x, above, of_sprung = cog
@@ -196,7 +208,8 @@ def _cog_and_inertia(table: _Numbers, points: Mapping[str, Any]) -> None:
     if height is not None:
         table.put("cog_height", round(height, 6), ("cog_height", ""), ("sprung_cog_height", ""))
     if a is not None and not placed:
-        table.put("cog_x", round(a, 6), ("cog_x", ""), ("cog_x", "front"), ("cog_x", "rear"), ("sprung_cog_x", ""))
+        keys = ("cog_x", "sprung_cog_x")
+        table.put("cog_x", round(a, 6), *((key, axle) for key in keys for axle in ("", *AXLES)))
     elif a is not None:
         load = stated.get("front_axle_load") or mass - stated.get("rear_axle_load", 0.0)
         if wheelbase and mass and abs(1.0 - a / wheelbase - load / mass) > AGREE:
@@ -209,26 +222,39 @@ def _inertia(table: _Numbers, mass: float, sprung: float, a: float | None, heigh
              sprung_a: float | None, sprung_height: float | None) -> None:  # fmt: skip
     """Enter the moments of the car: stated, or of the sprung mass with the unsprung masses as points."""
     stated = table.result.stated
+    unsprung, lengths = ("unsprung_mass_front", "unsprung_mass_rear"), ("wheelbase", "track_front", "track_rear")
     for name in ("roll_inertia", "pitch_inertia", "yaw_inertia"):
-        if (value := table.get(name)) is not None:
+        value, key = table.get(name), f"sprung_{name}"
+        moment = table.get(key)
+        if value is not None and moment is None and table.of_body:
+            table.guess(name, "", f"{name.replace('_', ' ')}: of the sprung mass, whose mass is stated alone")
+            value, moment, key = None, value, name
+        if value is not None:
             table.put(name, value, (name, ""))
+        if value is not None or moment is None:
             continue
-        if (moment := table.get(f"sprung_{name}")) is None:
+        needed = (*unsprung, *(lengths[:1] if name == "pitch_inertia" else lengths[1:] if name == "roll_inertia"
+                               else lengths))  # fmt: skip
+        missing = [word.replace("_", " ") for word in needed if word not in stated]
+        if missing or a is None:
+            missing += ["centre of gravity"] if a is None else []
+            table.guess(key, "", f"{name.replace('_', ' ')} of the sprung mass left out: the moment of the car needs "
+                        f"{', '.join(missing)} too")  # fmt: skip
             continue
-        needed = ("unsprung_mass_front", "unsprung_mass_rear", "track_front", "track_rear", "wheelbase", "tyre_radius")
-        if a is None or height is None or any(key not in stated for key in needed):
-            table.guess(f"sprung_{name}", "", f"{name.replace('_', ' ')} of the sprung mass left out: the moment of "
-                        "the car needs unsprung masses, wheelbase, tracks, radius and centre of gravity")  # fmt: skip
-            continue
-        front, rear, track_f, track_r, wheelbase, radius = (stated[key] for key in needed)
+        front, rear = (stated[word] for word in unsprung)
+        wheelbase, track_f, track_r = (stated.get(word, 0.0) for word in lengths)
         # The CoG of the sprung mass: stated, or what is left of the car.
         along = sprung_a if sprung_a is not None else (mass * a - rear * wheelbase) / sprung
-        above = sprung_height if sprung_height is not None else (mass * height - (front + rear) * radius) / sprung
         x = (front * a**2 + rear * (wheelbase - a) ** 2) + sprung * (along - a) ** 2
-        y = front * track_f**2 / 4.0 + rear * track_r**2 / 4.0
-        z = (front + rear) * (radius - height) ** 2 + sprung * (above - height) ** 2
+        y, z = front * track_f**2 / 4.0 + rear * track_r**2 / 4.0, 0.0
+        if height is not None and (radius := stated.get("tyre_radius")) is not None:
+            above = sprung_height if sprung_height is not None else (mass * height - (front + rear) * radius) / sprung
+            z = (front + rear) * (radius - height) ** 2 + sprung * (above - height) ** 2
+        elif name != "yaw_inertia":
+            table.guess(key, "", f"{name.replace('_', ' ')}: the heights of sprung and unsprung masses are taken as "
+                        "equal, because height of the CoG or radius is not stated")  # fmt: skip
         extra = {"roll_inertia": y + z, "pitch_inertia": x + z, "yaw_inertia": x + y}[name]
-        table.put(name, round(moment + extra, 3), (f"sprung_{name}", ""), why="with the unsprung masses at the wheels")
+        table.put(name, round(moment + extra, 3), (key, ""), why="with the unsprung masses at the wheels")
 
 
 def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
@@ -247,8 +273,9 @@ def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
         wheel, why = ride * tyre / (tyre - ride), ("ride_rate", axle)
     lumped = table.get("suspension_rate", axle)
     if wheel is None and lumped is not None:
-        wheel, why = lumped, ("suspension_rate", axle)
-        table.guess(*why, f"{key_words(*why)}: at the wheel")
+        why = ("suspension_rate", axle)
+        wheel = lumped if ratio is None else ratio**2 * lumped
+        table.guess(*why, f"{key_words(*why)}: at the {'wheel' if ratio is None else 'spring, by its motion ratio'}")
     spring = table.get("spring_rate", axle)
     if spring is not None and wheel is None:
         why = ("spring_rate", axle)
@@ -260,8 +287,10 @@ def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
             wheel = spring
             table.guess(*why, f"{key_words(*why)}: at the wheel (motion ratio 1); neither a motion ratio nor "
                         "the points of spring and arm are stated")  # fmt: skip
-    elif spring is not None and wheel is not None and ratio is None and not at_spring:
-        table.result.left_out.append(("", f"{key_words('spring_rate', axle)}: the wheel rate is stated too"))
+    elif spring is not None:
+        by_ratio = "" if ratio is None else f", {ratio**2 * spring:.0f} N/m at the wheel by its motion ratio"
+        text = f"{key_words('spring_rate', axle)} {spring:g} N/m{by_ratio}"
+        table.result.left_out.append(("", f"{text}: the wheel rate of {wheel or 0.0:.0f} N/m counts"))
     if wheel is not None:
         table.put(f"wheel_rate_{axle}", wheel, why, (why[0], ""), *((("motion_ratio", axle),) if ratio else ()))
     if (frequency := table.get("ride_frequency", axle)) is not None:
@@ -301,12 +330,24 @@ def _damping(table: _Numbers, axle: str, ratio: float | None, *, at_spring: bool
 
 def _roll(table: _Numbers, axle: str, wheel: float | None) -> None:
     whole, bar = table.get("roll_rate", axle), table.get("bar_rate", axle)
+    total, share = table.get("whole_roll_rate"), table.get("roll_share", axle)
     track = table.result.stated.get(f"track_{axle}")
     per_degree = math.pi / 180.0
+    other = table.get("roll_share", "rear" if axle == "front" else "front")
+    share = 1.0 - other if share is None and other is not None else share
+    if whole is None and total is not None and share is not None:
+        table.put(f"roll_stiffness_{axle}", total * share * per_degree, ("whole_roll_rate", ""), ("roll_share", axle))
+        return
+    at_wheel = table.get("bar_wheel_rate", axle)
+    if bar is None and at_wheel is not None and track is not None:
+        bar = 0.5 * at_wheel * track**2
+        table.guess("bar_wheel_rate", axle, f"bar rate {axle} at the wheel: force over travel of a wheel, the other "
+                    "one opposite, so K_phi = k t^2 / 2")  # fmt: skip
     if whole is not None:
         table.put(f"roll_stiffness_{axle}", whole * per_degree, ("roll_rate", axle))
     elif bar is not None and wheel is not None and track is not None:
         table.put(f"roll_stiffness_{axle}", (bar + 0.5 * wheel * track**2) * per_degree, ("bar_rate", axle),
+                  ("bar_wheel_rate", axle),
                   why="with the springs, K_w t^2 / 2")  # fmt: skip
     elif bar is not None:
         table.result.left_out.append(("", f"bar rate {axle}: the roll stiffness needs wheel rate and track too"))

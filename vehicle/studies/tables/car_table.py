@@ -75,8 +75,10 @@ def car_table(
     result, numbers = CarTable(file=whole.file), CarNumbers()
     for content in files:
         whole.numbers += content.numbers
+        whole.remarks += content.remarks
         whole.curves += content.curves
         whole.bushings += content.bushings
+        result.guessed += content.guessed
         result.left_out += content.left_out
         if content.tyre is not None:
             if result.tyre is not None:

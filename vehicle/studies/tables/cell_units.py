@@ -15,7 +15,8 @@ _OF_UNITS = re.compile(
 def name_and_unit(cell: str) -> tuple[str, str]:
     """Return the name of a header and its unit such as "x [mm]", "mass (kg)", "track, m", "x_mm"; "" for no unit."""
     match = _UNIT_AT_END.fullmatch(cell.strip())
-    if match is None:
+    if match is None or match[3] == "1":
+        # "M_US(1)" counts an axle.
         return cell.strip(), ""
     unit = next(group for group in match.groups()[1:] if group is not None)
     return (match[1].strip(), unit.strip()) if unit == "" or unit_factor(unit) is not None else (cell.strip(), "")

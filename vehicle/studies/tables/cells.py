@@ -2,12 +2,13 @@
 
 import csv
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.sheet_format import sheet_texts
 from vehicle.signals.formats.text import read_text
+from vehicle.studies.tables.unit_factor import unit_factor
 
 LARGEST_TABLE = 5e6
 """Largest size of a table [byte]; the points and numbers of a car take 1e3 to 1e5."""
@@ -18,17 +19,28 @@ _POINTED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+,\d+")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 _POINTS = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+")
 """Number with points between thousands where the comma is decimal: "1.280"."""
+_GROUPS = re.compile(r"(?<![\d.,])(\d{1,3})((?:[ '\u2019\u202f\u00a0]\d{3})+)(?=[.,]\d|\D|$)(?! *\d)")
+"""Thousands with blanks or apostrophes between them: 1 450, 1'450."""
+_VECTOR = re.compile(r"([\[({]?)\s*([+-]?[\d.]+)\s*[,;/ ]\s*([+-]?[\d.]+)\s*[,;/ ]\s*([+-]?[\d.]+)\s*[\])}]?")
+"""Three coordinates in one cell: "(0, 750, 300)", "0/750/300"."""
+_ASSIGNED = re.compile(r"\s*([A-Za-z_][\w. ]*?)\s*[=:]\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?|\[[^\]]+\])\s*;?\s*"
+                       r"(?:(?:[%#!]|//)\s*(.*))?")  # fmt: skip
+"""Assignment of a script with its remark: "m = 1400; % mass [kg]"."""
 WITH_UNIT = re.compile(r"([+-]?[\d.,]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%°\"(/].*)")
 """Number and unit in one cell: "1250 kg"."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Row:
-    """Row of a table: its place for messages, "points.csv:7", the title of its sheet or "", and its cells."""
+    """Row of a table: its place for messages, "points.csv:7", the title of its sheet or "", and its cells.
+
+    `is_loose`: name, value and unit, whatever the header above it.
+    """
 
     where: str
     sheet: str
     cells: tuple[str, ...]
+    is_loose: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,7 +60,7 @@ class CellTable:
         Raises:
             DataError: "1,250" or "1.250" in a file whose other numbers do not show the meaning of its sign.
         """
-        text = text.replace("\u2212", "-").replace("\u00a0", "").strip()
+        text = text.strip()
         if _POINTED.fullmatch(text):
             text = text.replace(".", "")
         is_pointed, is_thousand = _POINTS.fullmatch(text), _THOUSANDS.fullmatch(text)
@@ -83,6 +95,7 @@ def read_cells(path: Path) -> CellTable:
         ]
     else:
         rows = _text_rows(path)
+    rows = [replace(row, cells=tuple(part for cell in row.cells for part in _parts(_plain(cell)))) for row in rows]
     if not any(NUMBER.fullmatch(cell) or WITH_UNIT.fullmatch(cell) for row in rows for cell in row.cells):
         raise DataError(f"{path}: has no cell with a number; save names, values and units as CSV or XLSX")
     numbers = [match[1] if (match := WITH_UNIT.fullmatch(cell)) else cell for row in rows for cell in row.cells]
@@ -93,12 +106,44 @@ def read_cells(path: Path) -> CellTable:
     return CellTable(rows=tuple(rows), comma=comma, points=points)
 
 
+def _plain(cell: str) -> str:
+    """Return a cell whose number has no blanks between thousands and no sign of an approximate value before it."""
+    text = re.sub(r"^(?:~|≈|ca\.?|approx\.?|about) *(?=[\d+-])", "", cell.replace("\u2212", "-"))
+    if not re.match(r"[+-]?\d", text):
+        return text
+    return _GROUPS.sub(lambda match: match[1] + re.sub(r"\D", "", match[2]), text)
+
+
+def _parts(cell: str) -> tuple[str, ...]:
+    """Return the three coordinates of a cell, or the cell."""
+    match = _VECTOR.fullmatch(cell)
+    return match.groups()[1:] if match and (match[1] or "/" in cell) else (cell,)
+
+
+def _assignments(lines: list[str], path: Path) -> list[Row]:
+    """Return name, value, unit and remark of the assignments of a script; [] for another text."""
+    matches = [_ASSIGNED.fullmatch(line) for line in lines]
+    if sum(map(bool, matches)) < 0.5 * sum(bool(line.strip(" %#!/")) for line in lines):
+        return []
+    rows = []
+    for number, (line, match) in enumerate(zip(lines, matches, strict=True), 1):
+        cells: tuple[str, ...] = (line.strip(),)
+        if match is not None:
+            remark = match[3] or ""
+            pieces = [piece.strip() for piece in re.split(r"[\[\]();,]", remark)]
+            unit = next((piece for piece in pieces if piece and unit_factor(piece) is not None), "")
+            cells = (match[1], match[2], unit, remark)
+        rows.append(Row(where=f"{path}:{number}", sheet="", cells=cells))
+    return rows
+
+
 def _text_rows(path: Path) -> list[Row]:
     lines = read_text(path).lines
+    if rows := _assignments(list(lines), path):
+        return rows
     sign = next((sign for sign in (";", "\t") if sum(sign in line for line in lines) > 0.3 * len(lines)), ",")
     if sign == "," and sum("," in line for line in lines) <= 0.3 * sum(bool(line.strip()) for line in lines):
         sign = " "
-    rows = []
     for number, line in enumerate(lines, 1):
         where = f"{path}:{number}"
         if line.lstrip().startswith(("#", "!", "%", "//")):
@@ -123,7 +168,11 @@ def _blank_cells(line: str) -> list[str]:
     terms = line.split()
     first = next((index for index, word in enumerate(terms) if NUMBER.fullmatch(word)), len(terms))
     name = " ".join(terms[:first]).rstrip("=:").strip()
-    return ([name] if name else []) + terms[first:]
+    last = max((index for index, word in enumerate(terms) if NUMBER.fullmatch(word)), default=first) + 1
+    # "N s/m" is one unit.
+    ends = (end for end in range(len(terms), last, -1) if unit_factor(" ".join(terms[last:end])) is not None)
+    unit = next(ends, last)
+    return ([name] if name else []) + terms[first:last] + [" ".join(terms[last:unit])] * (unit > last) + terms[unit:]
 
 
 def _comma(cells: list[str]) -> str:

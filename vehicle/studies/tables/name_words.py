@@ -17,47 +17,51 @@ PLAIN: dict[str, str] = {
     "querlenker": "arm", "lenker": "arm", "dreieckslenker": "arm", "control": "", "trackrod": "tie", "tierod": "tie",
     "toelink": "tie", "spurstange": "tie", "steeringrod": "tie", "track-rod": "tie", "lbj": "lower ball",
     "ubj": "upper ball", "balljoint": "ball", "traggelenk": "ball", "kugelgelenk": "ball", "wc": "wheel center",
-    "wheelcenter": "wheel center", "wheelcentre": "wheel center", "radmitte": "wheel center",
-    "radmittelpunkt": "wheel center", "centre": "center", "mittelpunkt": "center", "mitte": "center",
-    "rad": "wheel", "cp": "contact", "patch": "contact", "contactpatch": "contact", "radaufstandspunkt": "contact",
-    "aufstandspunkt": "contact", "tire": "tyre", "tires": "tyre", "tyres": "tyre", "reifen": "tyre",
-    "shock": "damper", "dampers": "damper", "absorber": "damper", "daempfer": "damper", "dämpfer": "damper",
-    "shockabsorber": "damper", "federbein": "strut", "pherson": "", "mc": "", "feder": "spring",
-    "springs": "spring", "coil": "spring", "aufbaufeder": "spring", "arb": "bar", "stabilizer": "bar",
-    "stabiliser": "bar", "stabi": "bar", "stabilisator": "bar", "antiroll": "bar", "antirollbar": "bar", "sway": "bar",
-    "swaybar": "bar", "rollbar": "bar", "droplink": "droplink", "endlink": "droplink", "pendelstütze": "droplink",
-    "trailingarm": "trailing arm", "längslenker": "trailing arm", "upright": "knuckle", "radträger": "knuckle",
-    "hub": "knuckle",
+    "centre": "center", "mittelpunkt": "center", "mitte": "center", "rad": "wheel", "cp": "contact",
+    "patch": "contact", "contactpatch": "contact", "radaufstandspunkt": "contact", "aufstandspunkt": "contact",
+    "tire": "tyre", "tires": "tyre", "tyres": "tyre", "reifen": "tyre", "shock": "damper", "dampers": "damper",
+    "absorber": "damper", "daempfer": "damper", "dämpfer": "damper", "stoßdämpfer": "damper",
+    "shockabsorber": "damper", "federbein": "strut", "pherson": "", "mc": "", "feder": "spring", "springs": "spring",
+    "coil": "spring", "arb": "bar", "stabilizer": "bar", "stabiliser": "bar", "stabi": "bar", "stabilisator": "bar",
+    "antiroll": "bar", "antirollbar": "bar", "sway": "bar", "swaybar": "bar", "rollbar": "bar",
+    "droplink": "droplink", "endlink": "droplink", "pendelstütze": "droplink", "trailingarm": "trailing arm",
+    "längslenker": "trailing arm", "lager": "", "punkt": "", "stützlager": "top", "domlager": "top",
+    "upright": "knuckle", "radträger": "knuckle", "hub": "knuckle",
     # Places.
-    "outboard": "outer", "outside": "outer", "aussen": "outer", "außen": "outer", "äußerer": "outer",
-    "inboard": "inner", "inside": "inner", "innen": "inner", "innerer": "inner", "upr": "upper",
-    "oben": "upper", "oberer": "upper", "obere": "upper", "top": "top", "tower": "top", "dom": "top", "lwr": "lower",
-    "unten": "lower", "unterer": "lower", "untere": "lower", "bottom": "bottom", "fore": "front", "forward": "front",
-    "frt": "front", "vorn": "front", "vorne": "front", "vorderer": "front", "vordere": "front", "va": "front axle",
-    "fa": "front axle", "ra": "rear axle",
-    "vorderachse": "front axle", "vorderrad": "front wheel", "rearward": "rear", "aft": "rear", "back": "rear",
-    "rr_axle": "rear", "hinten": "rear", "hinterer": "rear", "hintere": "rear", "ha": "rear axle",
-    "hinterachse": "rear axle", "rht": "right", "links": "left", "linke": "left", "rechts": "right", "rechte": "right",
-    "achse": "axle", "suspension": "suspension", "fahrwerk": "suspension",
+    "outboard": "outer", "outside": "outer", "aussen": "outer", "außen": "outer", "inboard": "inner",
+    "inside": "inner", "innen": "inner", "upr": "upper", "oben": "upper", "top": "top", "tower": "top", "dom": "top",
+    "lwr": "lower", "unten": "lower", "bottom": "bottom", "fore": "front", "forward": "front", "frt": "front",
+    "vorn": "front", "vorne": "front", "va": "front axle", "fa": "front axle", "ra": "rear axle",
+    "vorderrad": "front wheel", "rearward": "rear", "aft": "rear", "back": "rear", "rr_axle": "rear",
+    "hinten": "rear", "ha": "rear axle", "rht": "right", "links": "left", "linke": "left", "rechts": "right",
+    "rechte": "right", "achse": "axle", "achs": "axle", "suspension": "suspension", "fahrwerk": "suspension",
+    "über": "above", "over": "above", "ober": "upper", "unter": "lower", "vorder": "front", "hinter": "rear",
+    "inner": "inner", "äußer": "outer",
     # Quantities.
-    "weight": "mass", "masse": "mass", "gewicht": "mass", "curb": "kerb", "leergewicht": "kerb mass",
-    "leermasse": "kerb mass", "car": "vehicle", "fahrzeug": "vehicle", "fahrzeugmasse": "vehicle mass",
-    "gesamtmasse": "vehicle mass", "whole": "total", "overall": "total", "stiffness": "rate", "steifigkeit": "rate",
-    "federrate": "spring rate", "federsteifigkeit": "spring rate", "radrate": "wheel rate", "constant": "rate",
-    "reifensteifigkeit": "tyre rate", "reifenfederrate": "tyre rate", "radbezogen": "wheel", "dämpfung": "damping",
-    "damp": "damping",
-    "unsprungmass": "unsprung mass", "sprungmass": "sprung mass", "ungefedert": "unsprung", "ungefederte": "unsprung",
-    "gefedert": "sprung", "gefederte": "sprung", "radstand": "wheelbase", "spurweite": "track", "spur": "track",
-    "trackwidth": "track", "tread": "track", "width": "", "cg": "cog", "com": "cog", "schwerpunkt": "cog",
-    "schwerpunkthöhe": "cog height", "schwerpunktshöhe": "cog height", "höhe": "height", "hoehe": "height",
-    "trägheitsmoment": "inertia", "massenträgheitsmoment": "inertia", "moi": "inertia", "wheelrate": "wheel rate",
-    "tyrerate": "tyre rate", "springrate": "spring rate", "radlast": "wheel load", "achslast": "axle load",
+    "weight": "mass", "masse": "mass", "gewicht": "mass", "curb": "kerb", "leer": "kerb", "car": "vehicle",
+    "fahrzeug": "vehicle", "whole": "total", "overall": "total", "gesamt": "total", "stiffness": "rate",
+    "steifigkeit": "rate", "federrate": "spring rate", "radbezogen": "wheel", "constant": "rate", "konstante": "rate",
+    "dämpfung": "damping", "dämpfungsmaß": "damping ratio", "dämpfungsgrad": "damping ratio", "damp": "damping",
+    "ungefedert": "unsprung", "gefedert": "sprung", "aufbau": "body",
+    "radstand": "wheelbase", "spurweite": "track", "spur": "track", "tread": "track", "width": "", "cg": "cog",
+    "com": "cog", "schwerpunkt": "cog", "höhe": "height", "hoehe": "height", "abstand": "distance",
+    "trägheit": "inertia", "massenträgheit": "inertia", "moment": "moment", "moi": "inertia", "last": "load",
     "rolling": "roll", "wank": "roll", "wanken": "roll", "nick": "pitch", "nicken": "pitch", "gieren": "yaw",
-    "gier": "yaw", "halbmesser": "radius",
-    "eigenfrequenz": "frequency", "übersetzung": "ratio", "corners": "corner", "wheels": "wheel", "ibs": "",
-    "frequencies": "frequency", "natural": "", "vertical": "", "radial": "", "installation": "motion",
+    "gier": "yaw", "halbmesser": "radius", "frequenz": "frequency", "eigenfrequenz": "frequency",
+    "übersetzung": "ratio", "verteilung": "distribution", "bias": "distribution", "split": "distribution",
+    "corners": "corner", "wheels": "wheel", "ibs": "", "frequencies": "frequency", "natural": "", "vertical": "",
+    "vertikal": "", "radial": "", "installation": "motion", "bump": "compression", "jounce": "compression",
+    "druckstufe": "compression", "druck": "compression", "extension": "rebound", "zugstufe": "rebound",
+    "zug": "rebound", "statisch": "static", "gesamtgewicht": "permissible", "gvw": "permissible",
 }  # fmt: skip
 """Word in small letters -> plain words; "" for a word without meaning here."""
+
+ADJECTIVE = re.compile(r"(ober|unter|vorder|hinter|inner|äußer|ungefedert|gefedert|statisch)e[rsnm]?")
+"""German adjectives with their endings."""
+
+STEMS = sorted((*PLAIN, "wheel", "tyre", "spring", "track", "unsprung", "sprung", "center", "mass", "rate", "radius"),
+               key=len, reverse=True)  # fmt: skip
+"""Parts of a word of several words, the longest first: Aufbaufedersteifigkeit, wheelrate."""
 
 OPTIMUM = {
     "chas_lowfor": "lower arm fore", "chas_lowaft": "lower arm aft", "chas_uppfor": "upper arm fore",
@@ -70,7 +74,8 @@ NOISE = frozenset({
     "hp", "pt", "point", "points", "joint", "location", "loc", "coordinate", "position", "pos", "mount", "mounting",
     "bushing", "bush", "pivot", "attachment", "attach", "the", "of", "at", "on", "to", "in", "a", "an", "and", "for",
     "from", "with", "per", "value", "its", "sub", "fixed", "about", "axis", "around", "der", "die", "das", "am",
-    "im", "des", "je", "pro", "mdl", "model", "ground", "coefficient", "design", "nominal", "static",
+    "im", "des", "je", "pro", "mdl", "model", "ground", "coefficient", "design", "nominal", "static", "zur", "zu",
+    "boden", "straße", "road",
 })  # fmt: skip
 """Words without effect on the meaning of a name."""
 
@@ -90,7 +95,8 @@ _PAIRS = (
     (("center", "mass"), "cog"), (("center", "gravity"), "cog"), (("cog", "cog"), "cog"), (("bar", "link"), "droplink"),
     (("damper", "damper"), "damper"), (("twist", "beam"), "twistbeam"), (("torsion", "beam"), "twistbeam"),
     (("a", "arm"), "arm"), (("stub", "axle"), "knuckle"), (("shear", "center"), "beam"),
-    (("with", "driver"), "occupied"), (("including", "driver"), "occupied"), (("incl", "driver"), "occupied"),
+    (("without", "driver"), "empty"), (("with", "driver"), "occupied"), (("including", "driver"), "occupied"),
+    (("incl", "driver"), "occupied"),
     (("half", "track"), "halftrack"),
 )  # fmt: skip
 """Neighbours that are one word."""
@@ -116,6 +122,33 @@ class NameWords:
         return set(terms) <= set(self.terms)
 
 
+def plain_words(piece: str) -> list[str]:
+    """Return the plain words of a word in small letters, or of the parts of a compound."""
+    if (adjective := ADJECTIVE.fullmatch(piece)) and piece not in PLAIN:
+        piece = adjective[1]
+    if piece in PLAIN:
+        return PLAIN[piece].split()
+    parts = _parts(piece) if len(piece) >= SHORTEST_COMPOUND else None
+    return [piece] if parts is None else [word for part in parts for word in PLAIN.get(part, part).split()]
+
+
+SHORTEST_COMPOUND = 7
+"""Letters of the shortest word that is split: radlast."""
+
+
+def _parts(word: str) -> list[str] | None:
+    """Return the stems that make a word, with "s", "n" or "e" between them; None if something is left."""
+    if not word:
+        return []
+    for stem in STEMS:
+        if len(stem) > 2 and word.startswith(stem):
+            tail = word[len(stem) :]
+            for end in ("", "s", "n", "e", "en"):
+                if tail.startswith(end) and (parts := _parts(tail[len(end) :])) is not None:
+                    return [stem, *parts]
+    return None
+
+
 def words_of(text: str) -> list[str]:
     """Return the plain words of a name, in order."""
     plain = text.replace("CoG", "cog").replace("CoM", "com")
@@ -124,7 +157,7 @@ def words_of(text: str) -> list[str]:
     pieces = [piece.lower() for piece in _PIECES.findall(plain)]
     terms: list[str] = []
     for piece in pieces:
-        terms += PLAIN.get(piece, piece).split()
+        terms += plain_words(piece)
     for pair, joined in _PAIRS:
         index = 0
         while index < len(terms) - 1:

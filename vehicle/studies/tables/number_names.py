@@ -48,14 +48,22 @@ def _quantity(
     return Quantity(terms=tuple(terms.split("|")), optional=optional, dimension=dimension, sizes=sizes, of_axle=of_axle)
 
 
+QUALIFIERS = frozenset({"max", "maximum", "min", "minimum", "permissible", "permitted", "zul", "zulässig", "zulässige",
+                        "laden", "gross", "limit", "tyre", "only", "without", "excluding", "excl", "ohne"})  # fmt: skip
+"""Words that make another number of it, also in parentheses: an axle load (max), a wheel rate (incl. tyre)."""
+
+STROKES = ("compression", "rebound")
+"""Words of the damping of one stroke."""
+
 PER_WHEEL = ("wheel", "corner", "side", "each", "one", "quarter", "single")
 """Words of a number of one wheel instead of an axle."""
 
 QUANTITIES: dict[str, Quantity] = {
-    "sprung_cog_height": _quantity("sprung cog height|sprung mass cog height|sprung cog z", LENGTH, (0.2, 1.5)),
+    "sprung_cog_height": _quantity("sprung cog height|sprung mass cog height|sprung cog z", LENGTH, (0.2, 1.5),
+                                   optional="above"),
     "sprung_cog_x": _quantity("sprung cog|sprung mass cog|sprung cog x|spring mass cog", LENGTH, (0.2, 5.0),
                               of_axle=None,
-                              optional="mass distance behind longitudinal"),
+                              optional="mass distance behind longitudinal vehicle"),
     "sprung_roll_inertia": _quantity("sprung roll inertia|sprung inertia x|sprung inertia ixx|sprung ixx|sprung "
                                      "inertia xx", INERTIA, (50, 2e4), optional="mass moment"),
     "sprung_pitch_inertia": _quantity("sprung pitch inertia|sprung inertia y|sprung inertia iyy|sprung iyy|sprung "
@@ -68,15 +76,15 @@ QUANTITIES: dict[str, Quantity] = {
                                optional="wheel corner side each total one assembly suspension quarter"),
     "kerb_mass": _quantity("mass|kerb mass", MASS, (100, 2e4),
                            optional="vehicle total kerb empty unladen ready occupied"),
-    "axle_load": _quantity("mass|load|axle load", MASS, (20, 2e4), of_axle=True,
+    "axle_load": _quantity("mass|load|axle load", MASS, (100, 2e4), of_axle=True,
                            optional="vehicle kerb wheel corner total empty"),
-    "front_share": _quantity("mass distribution|distribution|mass share|load distribution", NONE, (0.2, 0.8),
-                             of_axle=None, optional="kerb"),
-    "wheelbase": _quantity("wheelbase", LENGTH, (1.0, 8.0), optional="vehicle length"),
+    "front_share": _quantity("mass distribution|distribution|mass share|load distribution|share|mass fraction",
+                             NONE, (0.2, 0.8), of_axle=None, optional="kerb total vehicle"),
+    "wheelbase": _quantity("wheelbase", LENGTH, (1.0, 4.2), optional="vehicle length"),
     "track": _quantity("track", LENGTH, (0.8, 3.0), of_axle=None, optional="wheel"),
     "half_track": _quantity("halftrack", LENGTH, (0.4, 1.5), of_axle=None),
-    "cog_height": _quantity("cog height|cog z|height mass cog", LENGTH, (0.2, 1.5),
-                            optional="vehicle above mass total over"),
+    "cog_height": _quantity("cog height|cog z|height mass cog|cog above", LENGTH, (0.2, 1.2),
+                            optional="vehicle above mass total"),
     "cog_x": _quantity("cog|cog distance|cog x|cog longitudinal", LENGTH, (0.2, 5.0), of_axle=None,
                        optional="distance behind longitudinal x wheel mass between vehicle"),
     "roll_inertia": _quantity("roll inertia|inertia x|inertia xx|ixx|inertia ixx|jxx", INERTIA, (50, 2e4),
@@ -87,37 +95,43 @@ QUANTITIES: dict[str, Quantity] = {
                              optional="mass moment vehicle total"),
     "free_radius": _quantity("tyre radius free|tyre radius unloaded|wheel radius unloaded|unloaded radius|free radius",
                              LENGTH, (0.2, 0.8), of_axle=None, optional="tyre wheel"),
-    "tyre_radius": _quantity("tyre radius|wheel radius|loaded radius|rolling radius|effective radius", LENGTH,
-                             (0.2, 0.8), of_axle=None, optional="tyre wheel loaded rolling effective dynamic"),
+    "rolling_radius": _quantity("roll radius|effective radius|dynamic radius", LENGTH, (0.2, 0.8), of_axle=None,
+                                optional="tyre wheel"),
+    "tyre_radius": _quantity("tyre radius|wheel radius|loaded radius", LENGTH,
+                             (0.2, 0.8), of_axle=None, optional="tyre wheel loaded"),
     "tyre_rate": _quantity("tyre rate|tyre spring rate", RATE, (5e4, 2e6), of_axle=None, optional="wheel"),
     "tyre_damping": _quantity("tyre damping|tyre damper", DAMPING, (0.0, 5e3), of_axle=None, optional="rate"),
     "ride_rate": _quantity("ride rate", RATE, (3e3, 3e5), of_axle=None, optional="wheel"),
     "wheel_rate": _quantity("wheel rate|wheel spring rate|wheel suspension rate", RATE, (3e3, 3e5), of_axle=None,
-                            optional="spring suspension center"),
-    "suspension_rate": _quantity("suspension rate|suspension spring rate|suspension spring", RATE, (3e3, 3e5),
-                                 of_axle=None),
-    "spring_rate": _quantity("spring rate|spring", RATE, (3e3, 1e6), of_axle=None, optional="main"),
+                            optional="spring suspension center body"),
+    "suspension_rate": _quantity("suspension rate|suspension spring rate|suspension spring|heave rate", RATE,
+                                 (3e3, 3e5), of_axle=None),
+    "spring_rate": _quantity("spring rate|spring", RATE, (3e3, 1e6), of_axle=None, optional="main body"),
     "damper_ratio": _quantity("damper motion ratio", NONE, (0.2, 1.2), of_axle=None),
     "motion_ratio": _quantity("motion ratio|spring motion ratio|spring ratio", NONE, (0.2, 1.2), of_axle=None,
                               optional="spring damper wheel"),
     "damping_ratio": _quantity("damping ratio|critical damping", NONE, (0.02, 1.5), of_axle=None,
                                optional="suspension body ratio ride"),
-    "wheel_damping": _quantity("wheel damping|wheel damper rate|suspension damping|suspension damper rate", DAMPING,
+    "wheel_damping": _quantity("wheel damping|wheel damper rate|suspension damping|suspension damper rate|"
+                               "heave damping", DAMPING,
                                (100, 1e5), of_axle=None, optional="rate damper"),
     "damper_constant": _quantity("damper rate|damping|damper|damper damping|damping rate", DAMPING, (100, 1e5),
                                  of_axle=None, optional="linear"),
+    "bar_wheel_rate": _quantity("bar wheel rate", RATE, (300, 2e5), of_axle=True),
     "bar_rate": _quantity("bar roll rate|bar rate", ROLL_RATE, (500, 5e5), of_axle=True, optional="roll torsional"),
     "roll_rate": _quantity("roll rate", ROLL_RATE, (2e3, 1e6), of_axle=True,
                            optional="suspension axle total vehicle"),
+    "whole_roll_rate": _quantity("roll rate", ROLL_RATE, (5e3, 2e6), optional="total vehicle suspension"),
+    "roll_share": _quantity("roll rate distribution|roll distribution", NONE, (0.05, 0.95), of_axle=True),
     "ride_frequency": _quantity("ride frequency|frequency|body frequency", FREQUENCY, (0.3, 8.0), of_axle=True,
                                 optional="ride bounce heave suspension"),
     "pitch_frequency": _quantity("pitch frequency", FREQUENCY, (0.3, 8.0)),
-    "wheel_hop": _quantity("wheel hop|wheel hop frequency", FREQUENCY, (4.0, 30.0), of_axle=True),
+    "wheel_hop": _quantity("wheel hop|wheel hop frequency|wheel frequency", FREQUENCY, (4.0, 30.0), of_axle=True),
 }  # fmt: skip
 """Numbers by key; the first that fits is taken."""
 
 SYMBOLS: dict[str, tuple[str, str]] = {
-    "m": ("kerb_mass", ""), "mass": ("kerb_mass", ""), "mv": ("kerb_mass", ""), "mtot": ("kerb_mass", ""),
+    "m": ("kerb_mass", ""), "mv": ("kerb_mass", ""), "mtot": ("kerb_mass", ""),
     "ms": ("sprung_mass", ""), "msu": ("sprung_mass", ""), "mb": ("sprung_mass", ""),
     "mus": ("unsprung_mass", ""), "muf": ("unsprung_mass", "front"), "mur": ("unsprung_mass", "rear"),
     "musf": ("unsprung_mass", "front"),
@@ -137,6 +151,7 @@ SYMBOLS: dict[str, tuple[str, str]] = {
     "ktr": ("tyre_rate", "rear"), "rw": ("tyre_radius", ""), "rre": ("tyre_radius", ""), "r0": ("free_radius", ""),
     "mr": ("motion_ratio", ""), "mrf": ("motion_ratio", "front"), "mrr": ("motion_ratio", "rear"),
     "kspring": ("spring_rate", ""), "kspringl": ("spring_rate", ""), "wheelbase": ("wheelbase", ""),
+    "hwc": ("tyre_radius", ""), "krollaux": ("bar_rate", ""), "kaux": ("bar_rate", ""),
 }  # fmt: skip
 """Symbol without signs, in small letters -> number and axle: lumped models, CommonRoad, CarSim."""
 
@@ -149,6 +164,8 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
         key, axle = SYMBOLS[symbol]
         return key, "" if QUANTITIES[key].of_axle is False else axle or name.axle, True
     terms = set(name.terms)
+    if {"tyre", "rate"} <= terms and "roll" not in terms and terms & {"incl", "including", "inkl", "einschließlich"}:
+        return "ride_rate", name.axle, False
     if "suspension" in name.text.lower() and "suspension" not in terms:
         # "Front suspension stiffness" is the suspension stiffness of the front axle.
         whole = replace(name, text="", terms=(*name.terms, "suspension"))
@@ -157,8 +174,8 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
     first, _, last = name.text.rpartition(" ")
     if len(name.terms) > 1 and (symbol := "".join(letter for letter in last.lower() if letter.isalnum())) in SYMBOLS:
         # "Sprung mass m_s": words and symbol of one number.
-        rest = name_words(first, right_letter="")
-        listed = number_of(replace(rest, axle=rest.axle or name.axle)) if rest.terms else None
+        words_before = name_words(first, right_letter="")
+        listed = number_of(replace(words_before, axle=words_before.axle or name.axle)) if words_before.terms else None
         if listed is not None and listed[0] == SYMBOLS[symbol][0]:
             return listed
     for key, quantity in QUANTITIES.items():
@@ -168,4 +185,7 @@ def number_of(name: NameWords) -> tuple[str, str, bool] | None:
             required = set(option.split())
             if required <= terms <= required | set(quantity.optional.split()):
                 return key, name.axle, False
+    if "body" in terms:
+        # The body of a lumped model is its sprung mass.
+        return number_of(replace(name, text="", terms=tuple({"body": "sprung"}.get(term, term) for term in name.terms)))
     return None

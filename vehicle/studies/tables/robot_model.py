@@ -18,7 +18,7 @@ import numpy as np
 from vehicle.arrays import Vector
 from vehicle.errors import DataError
 from vehicle.signals.formats.text import read_text
-from vehicle.studies.tables.name_words import NameWords
+from vehicle.studies.tables.name_words import NameWords, name_words
 from vehicle.studies.tables.statements import Number, Point, Statements
 
 FRAME = "axes: x forward, y left, z up"
@@ -69,6 +69,9 @@ def _statements(path: Path, links: dict[str, _Link]) -> Statements:
     wheels = [name for name, link in links.items() if "wheel" in name.lower() and link.mass > 0.0
               and not any(other.parent == name and "wheel" in other.name.lower()
                           for other in links.values())]  # fmt: skip
+    # A steering wheel is at no corner of the car.
+    at_corners = [name for name in wheels if (parsed := name_words(name, right_letter="")).axle and parsed.side]
+    wheels = at_corners if len(at_corners) == 4 else wheels
     if len(wheels) != 4:
         raise DataError(
             f"{path}: has {len(wheels)} links with a mass and 'wheel' in their names, must be 4; rename them"

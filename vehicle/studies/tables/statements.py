@@ -1,17 +1,20 @@
 """Statements of a table: each row as a point, a number, a curve or a remark, in the words and units of the file."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from vehicle.errors import DataError
 from vehicle.studies.tables.axes import stated_axes
+from vehicle.studies.tables.carsim_rows import carsim_rows
 from vehicle.studies.tables.cell_units import length_unit, name_and_unit
 from vehicle.studies.tables.cells import WITH_UNIT, CellTable, Row, read_cells
-from vehicle.studies.tables.name_words import AXLES, CORNERS, SIDES, NameWords, name_words, right_letters, words_of
-from vehicle.studies.tables.number_names import number_of
-from vehicle.studies.tables.point_names import point_of
+from vehicle.studies.tables.headers import Heads, read_heads
+from vehicle.studies.tables.name_words import AXLES, SIDES, NameWords, name_words, right_letters, words_of
+from vehicle.studies.tables.number_names import QUALIFIERS, QUANTITIES, number_of
+from vehicle.studies.tables.point_names import is_template_name, point_of
+from vehicle.studies.tables.turned_numbers import TYRE_SIZE, turned_numbers
 from vehicle.studies.tables.turned_points import turned_points
 from vehicle.studies.tables.tyre_file import TyreFile
 from vehicle.studies.tables.unit_factor import unit_factor
@@ -57,7 +60,7 @@ class Statements:
         points, numbers, curves: its rows.
         bushings: rows of stiffness or damping along x, y, z, with the unit.
         remarks: texts outside these rows, which may state units, axes and the origin.
-        left_out: texts that are not understood, with their places.
+        guessed, left_out: guesses, and texts that are not understood, with their places.
         tyre: tyre of a `.tir` file; None in other files.
     """
 
@@ -67,48 +70,19 @@ class Statements:
     curves: list[Curve] = field(default_factory=list)
     bushings: list[Point] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
+    guessed: list[tuple[str, str]] = field(default_factory=list)
     left_out: list[tuple[str, str]] = field(default_factory=list)
     tyre: TyreFile | None = None
 
 
-COLUMNS = {
-    "name": "keyword name point hardpoint parameter quantity description bezeichnung punkt variable item property "
-            "symbol location element groesse größe kenngröße",
-    "unit": "unit units einheit",
-    "value": "value wert val values",
-    "side": "side symmetry seite",
-    "axle": "axle achse",
-    "skip": "source comment comments note notes reason remark remarks bemerkung quelle reference meaning",
-}  # fmt: skip
-"""Kind of a column -> words of its header."""
-
-KINDS = {word: sort for sort, terms in COLUMNS.items() for word in terms.split()}
-_COORDINATE = re.compile(r"(?:loc|pos|coord|coordinate)?[ _]*([xyz])(?:[ _]*(?:value|coordinate|coord|pos|loc))?", re.I)
-_BUSHING = re.compile(r"(k|c|d|stiffness|damping)[ _]*([xyz])", re.IGNORECASE)
 _AXLE_TITLE = re.compile(r"\b(front|rear) (axle|suspension|hardpoints)\b|\b(vorder|hinter)achse", re.IGNORECASE)
+_INCLUDED = re.compile(r"\b(incl|inkl|including|with|mit)\b.*")
 _ORIGIN = re.compile(r"\borigin\b|\bursprung\b", re.IGNORECASE)
 _SENTENCE = re.compile(r"\b(is|are|was|were|has|have|ist|sind|hat)\b|\.$", re.IGNORECASE)
 """Marks of a sentence on an axle, which is no title of rows."""
 LONGEST_TITLE = 6
 """Most words of a title that does not begin with the axle or its points."""
 _FIRST = {*AXLES, *SIDES, "hardpoint", "hardpoints", "points", "coordinates"}
-TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
-
-
-def _triples(columns: Mapping[str, int]) -> list[str]:
-    """Return the letters of the columns k, c, d, s that have x, y and z: stiffness or damping, by their units."""
-    return [letter for letter in "kcds" if {f"{letter}{axis}" for axis in "xyz"} <= set(columns)]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Heads:
-    """Header of a block: index and unit of each column by its kind, axles of values, columns of names."""
-
-    columns: dict[str, int]
-    units: dict[str, str]
-    axles: dict[int, tuple[str, str]]
-    width: int
-    names: list[int]
 
 
 def statements(path: Path) -> Statements:
@@ -118,9 +92,16 @@ def statements(path: Path) -> Statements:
         ConfigurationError: the file is missing or too large.
         DataError: it is no table, or a name or a number is ambiguous.
     """
-    table = read_cells(path)
-    table = replace(table, rows=turned_points(table.rows))
     content = Statements(file=path.name)
+    if path.suffix.lower() == ".par":
+        rows, others = carsim_rows(path)
+        table = CellTable(rows=tuple(rows), comma="thousands")
+        if others:
+            content.left_out.append(("", f"keywords of no number of a car here: {', '.join(dict.fromkeys(others))}"))
+        _Reader(table=table, content=content, letters={}, stem="").read()
+        return content
+    table = read_cells(path)
+    table = replace(table, rows=turned_points(turned_numbers(table.rows, content.guessed)))
     names = [row.cells[0] for row in table.rows if row.cells]
     _Reader(table=table, content=content, letters=right_letters(names), stem=path.stem).read()
     return content
@@ -132,10 +113,11 @@ class _Reader:
     content: Statements
     letters: dict[str, str]
     stem: str
-    heads: _Heads | None = None
+    heads: Heads | None = None
     axle: str = ""
     side: str = ""
     unit: str = ""
+    per_wheel: str = ""
     placed: bool = False
     curve: list[tuple[float, float]] = field(default_factory=list)
     coordinates: dict[tuple[str, str, str], dict[str, tuple[float, str, str, NameWords]]] = field(default_factory=dict)
@@ -154,7 +136,8 @@ class _Reader:
             elif not self._row(row):
                 text = " ".join(cells)
                 is_remark = bool(length_unit(text) or _ORIGIN.search(text) or stated_axes([text], row.where))
-                if len(cells) > 1 and any(map(str.isdigit, " ".join(cells[1:]))) and not is_remark:
+                has_number = any(map(str.isdigit, " ".join(cells[1:]))) or re.search(r"[:=] *\d", text)
+                if has_number and not is_remark:
                     self.content.left_out.append((row.where, f"{', '.join(cells)[:60]!r}: not understood"))
                 self._remark(text, title=not is_remark)
         for (_, axle, side), parts in self.coordinates.items():
@@ -164,7 +147,7 @@ class _Reader:
         """Read a row of numbers or a header; False for a text."""
         row = self._whole_name(row)
         values = [self.table.number(row, cell) for cell in row.cells]
-        if self.heads is not None and {"velocity", "force"} <= set(self.heads.columns):
+        if self.heads is not None and self.heads.is_curve:
             pair = [values[self.heads.columns[key]] if self.heads.columns[key] < len(values) else None
                     for key in ("velocity", "force")]  # fmt: skip
             if None not in pair:
@@ -174,12 +157,12 @@ class _Reader:
         if not any(value is not None for value in values) and not any(map(WITH_UNIT.fullmatch, row.cells)) \
                 and not any(map(TYRE_SIZE.fullmatch, row.cells)):  # fmt: skip
             return self._header(row)
-        if self.heads is not None and (triples := _triples(self.heads.columns)):
+        if self.heads is not None and (triples := self.heads.triples):
             text = self._cell(row, "name")
             for letter in triples:
                 at = [values[self.heads.columns[f"{letter}{axis}"]] for axis in "xyz"]
                 if None not in at and text:
-                    unit, name = self.heads.units[f"{letter}x"], self._name(row, text)
+                    unit, name = self.heads.units[f"{letter}x"] or self._cell(row, "unit"), self._name(row, text)
                     self.content.bushings.append(Point(where=row.where, name=name, at=tuple(at), unit=unit))  # type: ignore[arg-type]
             return True
         if self.heads is not None and "x" in self.heads.columns:
@@ -194,58 +177,23 @@ class _Reader:
         return Row(where=row.where, sheet=row.sheet, cells=(", ".join(row.cells[: extra + 1]), *row.cells[extra + 1 :]))
 
     def _header(self, row: Row) -> bool:
-        columns: dict[str, int] = {}
-        units: dict[str, str] = {}
-        axles: dict[int, tuple[str, str]] = {}
-        names: list[int] = []
-        for index, cell in enumerate(row.cells):
-            text, unit = name_and_unit(cell)
-            plain = words_of(text)
-            coordinate = _COORDINATE.fullmatch(text)
-            if bushing := _BUSHING.fullmatch(text):
-                sort = f"{bushing[1][0].lower()}{bushing[2].lower()}"
-                columns.setdefault(sort, index)
-                units.setdefault(sort, unit)
-                continue
-            sort = coordinate[1].lower() if coordinate else next((KINDS[word] for word in text.lower().split()
-                                                                  if word in KINDS), "")  # fmt: skip
-            if not sort and plain and plain[0] in ("velocity", "speed", "geschwindigkeit", "v"):
-                sort = "velocity"
-            elif not sort and plain and plain[0] in ("force", "kraft", "f") and "velocity" in columns:
-                sort = "force"
-            elif not sort and plain and set(plain) <= {*AXLES, *SIDES, *CORNERS, "axle", "f", "r", "value", "wheel"}:
-                word = next((word for word in plain if word in (*AXLES, *CORNERS, "f", "r")), "")
-                side = next((word for word in plain if word in SIDES), "")
-                axles[index] = CORNERS.get(word, ({"f": "front", "r": "rear"}.get(word, word), side))
-            if sort == "name":
-                names.append(index)
-            if sort and sort not in columns:
-                columns[sort] = index
-                units[sort] = unit
-            elif unit and index in axles:
-                units[f"axle{index}"] = unit
-        points = {"x", "y", "z"} <= set(columns)
-        listed = (
-            points
-            or bool(_triples(columns))
-            or {"velocity", "force"} <= set(columns)
-            or "value" in columns
-            or len(axles) > 1
-        )
-        if not listed:
+        heads = read_heads(row)
+        if heads is None:
             return False
-        if self.heads is None and self.placed and "value" in columns:
+        if self.heads is None and self.placed and "value" in heads.columns:
             self._title("")
-        if "name" not in columns:
-            taken = {*columns.values(), *(() if points else axles)}
-            free = [index for index in range(len(row.cells)) if index not in taken]
-            columns["name"] = free[0] if free else 0
         # "Front suspension (mm), X, Y, Z": the head of the names is a title.
-        title, unit = name_and_unit(row.cells[columns["name"]])
+        title, unit = name_and_unit(row.cells[heads.columns["name"]])
         if {*words_of(title)} & set(AXLES):
             self._title(title)
         self.unit = unit or self.unit
-        self.heads = _Heads(columns=columns, units=units, axles=axles, width=len(row.cells), names=names)
+        self.heads = heads
+        in_use = {*heads.columns.values(), *heads.names, *heads.axles}
+        others = [cell for index, cell in enumerate(row.cells) if cell and index not in in_use]
+        if others and (heads.triples or heads.is_curve or "x" in heads.columns):
+            self.content.left_out.append((row.where, f"columns {', '.join(others)}: not read"))
+        for index in heads.limits:
+            self.content.left_out.append((row.where, f"column {row.cells[index]!r}: not of the empty car"))
         return True
 
     def _point_row(self, row: Row, values: Sequence[float | None]) -> bool:
@@ -264,7 +212,7 @@ class _Reader:
 
     def _plain_row(self, row: Row, values: Sequence[float | None]) -> bool:
         """Read name, value and unit; name and three coordinates; or name and a value of each axle."""
-        heads = self.heads
+        heads = None if row.is_loose else self.heads
         at = heads.columns["name"] if heads is not None and "name" in heads.columns else next(
             (index for index, cell in enumerate(row.cells) if cell and values[index] is None), -1)  # fmt: skip
         if at < 0 or at >= len(row.cells) or not row.cells[at]:
@@ -275,8 +223,15 @@ class _Reader:
             at = next((index for index in others if number_of(self._name(row, name_and_unit(row.cells[index])[0]))), at)
         text, unit = name_and_unit(row.cells[at])
         unit = self._cell(row, "unit") or unit
-        skipped = set() if heads is None else {heads.columns[key] for key in ("unit", "skip") if key in heads.columns}
+        columns = {} if heads is None else heads.columns
+        skipped = {index for key, index in columns.items() if key == "unit" or key.startswith("skip")}
         if heads is not None and heads.axles:
+            filled = [index for index in heads.axles if index < len(row.cells) and row.cells[index]]
+            whole = number_of(name_words(text, right_letter=""))
+            # "Total weight,1400,," below front and rear is the weight of the car.
+            is_whole = len(filled) == 1 and whole is not None and QUANTITIES[whole[0]].of_axle is False
+            if is_whole:
+                self.content.guessed.append((row.where, f"{text!r}: of the car, in the column of one axle"))
             for index, (axle, side) in heads.axles.items():
                 cell = row.cells[index] if index < len(row.cells) else ""
                 joined = WITH_UNIT.fullmatch(cell)
@@ -284,12 +239,15 @@ class _Reader:
                 number = self.table.number(row, joined[1] if joined and not size else cell)
                 if number is not None or size:
                     of_cell = joined[2] if joined and not size else unit or heads.units.get(f"axle{index}", "")
-                    self._add_number(row, self._name(row, text, axle, side), cell if size else number, of_cell)
+                    name = self._name(row, text, *(("", "") if is_whole else (axle, side)))
+                    self._add_number(row, name, cell if size else number, of_cell)
+                elif any(map(str.isdigit, cell)):
+                    self.content.left_out.append((row.where, f"{text!r}: {cell!r} is not understood"))
             return True
         after = [(index, value) for index, value in enumerate(values) if value is not None and index not in skipped]
         if heads is not None and "value" in heads.columns:
             after = [(index, value) for index, value in after if index == heads.columns["value"]]
-        if len(after) == 3 and after[2][0] - after[0][0] == 2:
+        if len(after) == 3 and after[2][0] - after[0][0] == 2 and number_of(self._name(row, text)) is None:
             self._add_point(row, self._name(row, text), tuple(value for _, value in after), unit or self.unit)  # type: ignore[arg-type]
             return True
         if heads is None and self.placed:
@@ -309,9 +267,15 @@ class _Reader:
         index, value = after[0]
         following = next((row.cells[other] for other in range(index + 1, len(row.cells))
                           if row.cells[other] and values[other] is None), "")  # fmt: skip
+        listed = number_of(self._name(row, text))
         if unit_factor(following.strip("()[]")) is not None:
             # "sprung mass (ms), 1250, kg": the text after the value takes precedence.
             unit = following
+        elif not unit and listed is not None:
+            # A column of units before the values.
+            dimension = QUANTITIES[listed[0]].dimension
+            of_cells = ((cell, unit_factor(cell, dimension)) for cell in row.cells[at + 1 : index])
+            unit = next((cell for cell, factor in of_cells if factor and factor.dimension == dimension), "")
         if more := [row.cells[other] for other, _ in after[1:]]:
             self.content.left_out.append((row.where, f"{text!r}: the further values {', '.join(more)[:60]}; the first "
                                           "one counts"))  # fmt: skip
@@ -328,7 +292,7 @@ class _Reader:
                 self.coordinates.setdefault((key, name.axle, name.side), {})[last] = (value, unit, row.where, point)
                 return
         assert value is not None  # fmt: skip
-        note = " ".join(cell for cell in row.cells if name_and_unit(cell)[0] != name.text)
+        note = " ".join((*(cell for cell in row.cells if name_and_unit(cell)[0] != name.text), self.per_wheel))
         self.content.numbers.append(Number(where=row.where, name=name, value=value, unit=unit, note=note))
 
     def _joined(self, parts: dict[str, tuple[float, str, str, NameWords]], axle: str, side: str) -> None:
@@ -359,14 +323,21 @@ class _Reader:
     def _name(self, row: Row, text: str, axle: str = "", side: str = "") -> NameWords:
         """Return the words of a name, with axle and side of its columns, its column head or the title above."""
         letter = self.letters.get(row.cells[0], self.letters.get(text, ""))
-        if index := re.search(r"\(([12])\)$", text):
-            # CarSim counts axles: L_TRACK(2).
+        if index := re.search(r"\(([12])(?:,([12]))?\)$", text):
+            # CarSim counts axles and sides: L_TRACK(2), RRE(1,2).
             text, axle = text[: index.start()], AXLES[int(index[1]) - 1]
+            side = SIDES[int(index[2]) - 1] if index[2] else side
         name = name_words(text, right_letter=letter, where=row.where)
-        if point_of(name) in (None, "cog") and number_of(name) is None and "(" in text:
-            name = name_words(re.sub(r"\([^)]*\)", " ", text), right_letter=letter, where=row.where)
+        if point_of(name) in (None, "cog") and number_of(name) is None and not QUALIFIERS & set(words_of(text)):
+            plain = re.sub(r"\([^)]*\)", " ", text)
+            if name.has("unsprung"):
+                plain = _INCLUDED.sub(" ", plain)
+            name = name_words(plain, right_letter=letter, where=row.where)
         column = words_of(self._cell(row, "axle"))
         axle = axle or next((word for word in column if word in AXLES), "")
+        if (name.has("link") or is_template_name(text)) and name.axle and (axle or self.axle):
+            # "Lower front link" below the title of the rear axle: front is its place.
+            name = replace(name, terms=(*name.terms, name.axle), axle="")
         said = words_of(self._cell(row, "side"))
         both = {"left", "right"} <= set(said)
         side = side or ("" if both else next((word for word in said if word in ("left", "right", "single")), ""))
@@ -396,5 +367,6 @@ class _Reader:
         ends = {word for word in terms if word in AXLES}
         sides = {word for word in terms if word in ("left", "right")}
         self.placed = False
+        self.per_wheel = "per wheel" if {"quarter", "corner"} & set(terms) else ""
         self.axle = ends.pop() if len(ends) == 1 else ""
         self.side = sides.pop() if len(sides) == 1 else ""

@@ -5,26 +5,23 @@ from pathlib import Path
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.teim_orbit import is_property_file
 from vehicle.studies.tables.adams_model import read_adams_model
+from vehicle.studies.tables.adams_subsystem import read_subsystem, subsystems
 from vehicle.studies.tables.name_words import NameWords
 from vehicle.studies.tables.robot_model import read_robot_model
 from vehicle.studies.tables.statements import Number, Statements, statements
-from vehicle.studies.tables.tyre_file import read_tyre_file
+from vehicle.studies.tables.tyre_file import OF_THE_FILE, read_tyre_file
 
-TABLES = (".csv", ".txt", ".tsv", ".dat", ".xlsx", ".xlsm")
+TABLES = (".csv", ".txt", ".tsv", ".dat", ".xlsx", ".xlsm", ".m", ".par")
 
 REFUSED = {
-    ".asy": "an Adams Car assembly names further files; export the hardpoints and masses of its subsystems as CSV",
-    ".sub": "an Adams Car subsystem; export its hardpoints as CSV (Adams Car: Tools, Hardpoint Table)",
     ".bin": "an Adams View database; export a .cmd or .adm file, or the hardpoints as CSV",
     ".mnf": "a flexible body; give its mass and stiffness matrices to `vehicle body import`",
-    ".par": "a CarSim parameter file; write keyword, value and unit of each row to a CSV",
-    ".cpar": "a CarSim database; write keyword, value and unit of each row to a CSV",
+    ".cpar": "a CarSim database; export a parameter file (.par)",
     ".spck": "a Simpack model; export its markers and masses as CSV",
     ".xls": "Excel before 2007; save it as XLSX or CSV",
     ".ods": "an OpenDocument sheet; save it as XLSX or CSV",
     ".xml": "an XML file; write points, values and units to a CSV",
     ".json": "JSON; write points, values and units to a CSV",
-    ".m": "a MATLAB script; write names, values and units to a CSV",
     ".mat": "a MATLAB file; write names, values and units to a CSV",
     ".xacro": "a xacro file; run `xacro FILE > car.urdf` and give its result",
     ".sdf": "SDF; convert it to URDF, or write its masses and points to a CSV",
@@ -33,7 +30,7 @@ REFUSED = {
 }
 """Kind of a file by its ending, and the way to a file that is read."""
 
-READ = "CSV, text, XLSX, .adm, .cmd, .urdf, .tir"
+READ = "CSV, text, XLSX, .par, .sub, .adm, .cmd, .urdf, .tir"
 
 
 def file_statements(path: Path) -> Statements:
@@ -50,6 +47,12 @@ def file_statements(path: Path) -> Statements:
         raise ConfigurationError(f"--table {path}: the file does not exist; give the path of a table ({READ})")
     if ending in (".adm", ".cmd"):
         return read_adams_model(path)
+    if ending == ".sub":
+        return read_subsystem(path)
+    if ending == ".asy":
+        names = subsystems(path)
+        raise ConfigurationError(f"--table {path}: is an Adams Car assembly, which contains no points; give its "
+                                 f"subsystems: --table {' '.join(names) or 'FILE.sub ...'}")  # fmt: skip
     if ending == ".urdf":
         return read_robot_model(path)
     if ending == ".tir":
@@ -68,13 +71,13 @@ def _tyre(path: Path) -> Statements:
     content = Statements(file=path.name, tyre=tyre)
     for key, terms, value, unit in (
         ("UNLOADED_RADIUS", "tyre radius unloaded", tyre["UNLOADED_RADIUS"], "m"),
-        ("VERTICAL_STIFFNESS", "tyre rate", tyre.vertical_stiffness, "N/m"),
+        (tyre.stiffness_origin, "tyre rate", tyre.vertical_stiffness, "N/m"),
         ("VERTICAL_DAMPING", "tyre damping", tyre["VERTICAL_DAMPING"], "N s/m"),
     ):
         if value:
             name = NameWords(text=key, terms=tuple(terms.split()), axle="", side="")
             content.numbers.append(Number(where=str(path), name=name, value=value, unit=unit))
     for block, names in tyre.unused.items():
-        text = f"[{block}] {', '.join(names)}: of large or combined slip, camber and moments"
-        content.left_out.append(("", text))
+        why = "not used" if block in OF_THE_FILE else "of large or combined slip, camber and moments"
+        content.left_out.append(("", f"[{block}] {', '.join(names)}: {why}"))
     return content

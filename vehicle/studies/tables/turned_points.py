@@ -47,17 +47,19 @@ def _columns(names: Row, block: Sequence[Row]) -> list[Row]:
 
 def _groups(head: Row, above: Row | None) -> list[tuple[int, str]]:
     """Return first column and title of each group x, y, z of a header."""
-    found = [_HEAD.fullmatch(name_and_unit(cell)[0]) for cell in head.cells]
+    matches = [_HEAD.fullmatch(name_and_unit(cell)[0]) for cell in head.cells]
     starts = [
-        start for start in range(1, len(found) - 2)
-        if [match and match[2].lower() for match in found[start : start + 3]] == ["x", "y", "z"]
+        start for start in range(1, len(matches) - 2)
+        if [match and match[2].lower() for match in matches[start : start + 3]] == ["x", "y", "z"]
     ]  # fmt: skip
-    titles = [(found[start] or {1: ""})[1] or "" for start in starts]
+    titles = [(matches[start] or {1: ""})[1] or "" for start in starts]
     if above is not None and not any(titles):
         titles = [above.cells[start] if start < len(above.cells) else "" for start in starts]
         titles = [title if re.search(r"[^\W\d]", title) else "" for title in titles]
     return (
-        list(zip(starts, titles, strict=True)) if len(starts) > 1 or any(match and match[1] for match in found) else []
+        list(zip(starts, titles, strict=True))
+        if len(starts) > 1 or any(match and match[1] for match in matches)
+        else []
     )
 
 

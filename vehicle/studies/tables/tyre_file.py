@@ -36,8 +36,15 @@ USED = frozenset({
 })  # fmt: skip
 """Coefficients that are used."""
 
+PRESSURES = ("PPX1", "PPX2", "PPY1", "PPY2", "PPZ1", "PFZ1", "INFLPRES", "NOMPRES", "IP", "IP_NOM")
+"""Coefficients of the inflation pressure, used in MF-Tyre 6.x alone."""
+
+OF_THE_FILE = ("VERTICAL", "STRUCTURAL", "DIMENSION", "INERTIA", "VERTICAL_FORCE_RANGE", "OPERATING_CONDITIONS",
+               "MODEL", "TIRE_CONDITIONS")  # fmt: skip
+"""Blocks without coefficients of slip."""
+
 BLOCKS = ("COEFFICIENTS", "VERTICAL", "STRUCTURAL", "OVERTURNING", "ROLLING", "ALIGNING", "LATERAL", "LONGITUDINAL",
-          "TURNSLIP", "CONTACT_PATCH", "DEFLECTION", "BOTTOMING", "DIMENSION")  # fmt: skip
+          "TURNSLIP", "CONTACT_PATCH", "DEFLECTION", "BOTTOMING", "DIMENSION", "INERTIA")  # fmt: skip
 """Parts of the names of blocks with coefficients of the model."""
 
 
@@ -50,6 +57,7 @@ class TyreFile:
         model: name of the model.
         coefficients: numbers by name in upper case.
         unused: names of unused coefficients that are not zero, by block.
+        has_curve: True if the slope of a load curve replaces VERTICAL_STIFFNESS.
     """
 
     file: str
@@ -57,6 +65,7 @@ class TyreFile:
     fit: str
     coefficients: dict[str, float]
     unused: dict[str, list[str]] = field(default_factory=dict)
+    has_curve: bool = False
 
     def __getitem__(self, name: str) -> float:
         """Return a coefficient; missing: 1 for a scaling factor, 2 for PKY4, else 0."""
@@ -74,6 +83,13 @@ class TyreFile:
         if self.fit not in NEWER or not self["NOMPRES"] or "INFLPRES" not in self.coefficients:
             return 0.0
         return self["INFLPRES"] / self["NOMPRES"] - 1.0
+
+    @property
+    def stiffness_origin(self) -> str:
+        """Return the names behind the vertical stiffness."""
+        name = "slope of DEFLECTION_LOAD_CURVE at FNOMIN" if self.has_curve else "VERTICAL_STIFFNESS"
+        scaled = f" x LCZ {self['LCZ']:g}" if self["LCZ"] != 1.0 else ""
+        return name + scaled + (" at INFLPRES" if self["PFZ1"] * self.pressure else "")
 
     @property
     def vertical_stiffness(self) -> float:
@@ -139,8 +155,11 @@ def read_tyre_file(path: Path) -> TyreFile:
             f"{path}: is of the tyre model {name or fit or 'without FITTYP in [MODEL]'}, which is not read; fit or "
             f"export the tyre as one of {', '.join(READ.values())} (FITTYP {', '.join(READ)})"
         )
-    coefficients, unused = _coefficients(content)
-    tyre = TyreFile(file=path.name, model=READ[fit], fit=fit, coefficients=coefficients, unused=unused)
+    coefficients, unused = _coefficients(content, fit)
+    has_curve = bool((curve := content.blocks.get("DEFLECTION_LOAD_CURVE")) and curve.rows)
+    tyre = TyreFile(
+        file=path.name, model=READ[fit], fit=fit, coefficients=coefficients, unused=unused, has_curve=has_curve
+    )
     for key, low, high, unit in (("FNOMIN", 500.0, 1e5, "N"), ("UNLOADED_RADIUS", 0.15, 1.0, "m"),
                                  ("VERTICAL_STIFFNESS", 2e4, 5e6, "N/m")):  # fmt: skip
         if not low <= coefficients.get(key, math.nan) <= high:
@@ -156,7 +175,7 @@ OTHER_MODELS = ("PAC89", "PAC94", "FIALA", "UA", "FTIRE", "CTIRE", "5.2.1", "PAC
 """Models of the same file format that are not read."""
 
 
-def _coefficients(content: PropertyFile) -> tuple[dict[str, float], dict[str, list[str]]]:
+def _coefficients(content: PropertyFile, fit: str) -> tuple[dict[str, float], dict[str, list[str]]]:
     """Return the coefficients that count in SI units, and names of unused coefficients by block."""
     length, force, time = (content.unit(name) for name in ("LENGTH", "FORCE", "TIME"))
     units = {"UNLOADED_RADIUS": length, "FNOMIN": force, "VERTICAL_STIFFNESS": force / length,
@@ -166,13 +185,18 @@ def _coefficients(content: PropertyFile) -> tuple[dict[str, float], dict[str, li
     unused: dict[str, list[str]] = {}
     for block, entries in content.blocks.items():
         for name, text in entries.values.items():
-            if name in USED:
+            if name in PRESSURES and fit not in NEWER:
+                if _not_zero(text):
+                    unused.setdefault(block, []).append(name)
+            elif name in USED and text:
                 value = content.number(block, name)
                 assert value is not None  # fmt: skip
                 coefficients[name] = value * units.get(name, 1.0)
             elif any(part in block for part in BLOCKS) and _not_zero(text):
                 unused.setdefault(block, []).append(name)
     if (curve := content.blocks.get("DEFLECTION_LOAD_CURVE")) is not None and curve.rows:
+        if "VERTICAL_STIFFNESS" in coefficients:
+            unused.setdefault("VERTICAL", []).append("VERTICAL_STIFFNESS")
         slope = _slope(content.points("DEFLECTION_LOAD_CURVE", length, force), coefficients.get("FNOMIN", 0.0))
         coefficients["VERTICAL_STIFFNESS"] = slope
     return coefficients, unused

@@ -49,8 +49,8 @@ class Factor:
 def unit_factor(text: str, expected: Dimension | None = None) -> Factor | None:
     """Return powers and factor of a unit; None for other texts.
 
-    A slash divides by all that follows up to the next one, so N/(m/s) and N s/m are equal. A pound is a force where
-    only this gives the expected dimension: lb/in.
+    A slash divides by all that follows up to the next one, so N/(m/s) and N s/m are equal. A pound or a kg is a force
+    where only this gives the expected dimension: lb/in, kg/mm.
 
     Args:
         text: unit, for example "N/mm".
@@ -65,7 +65,7 @@ def unit_factor(text: str, expected: Dimension | None = None) -> Factor | None:
     plain = re.sub(r"(?<=[a-z])-(?=[a-z])", " ", plain).replace("(", " ").replace(")", " ").strip()
     content = _product(plain)
     if content is not None and expected is not None and content.dimension != expected:
-        force = _product(re.sub(r"\blbs?\b", "lbf", plain))
+        force = _product(re.sub(r"\b(lb|kg)s?\b", r"\1f", plain))
         content = force if force is not None and force.dimension == expected else content
     return content
 
