@@ -2,8 +2,8 @@
 
     python -m tests.benchmarks.diagnosis_calibration [inside N] [outside N] [mujoco N] [healthy N]
 
-Without arguments all of them run. One training of drives with a phone at the seat rail, and with eight sensors at
-wheels and strut tops, serves all: the sedan at 79 km/h for 39 s.
+Without arguments all of them run. One training of drives with a phone at the seat rail, and one with eight sensors
+at wheels and strut tops, serve all: the sedan at 79 km/h for 39 s.
 
 inside: cars of the prior, few on each road: ranks of the true factors, 90 % intervals, AUC for "below 0.6", road class.
 outside: springs, stabilizers and mounts +-30 % of each side apart, and other laws than those of the training.
@@ -14,7 +14,6 @@ Wrong inputs are in `tests.benchmarks.diagnosis_wrong_inputs`.
 
 import sys
 import time
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,10 +26,7 @@ from vehicle.studies.diagnosis.car_diagnosis import SURE, WORN
 from vehicle.studies.diagnosis.diagnosis import Diagnostics
 from vehicle.studies.diagnosis.drawn_car import CarPrior, DrawnCar
 from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts
-from vehicle.studies.diagnosis.driven_modes import ModeFit
-from vehicle.studies.diagnosis.features import Bands
-from vehicle.studies.diagnosis.record_gain import GainTest
-from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, drawn_road, drive
+from vehicle.studies.diagnosis.simulated_drives import RATE, drawn_road, drive
 
 WHEELS = ("fr", "fl", "rr", "rl")
 """In the order of the car."""
@@ -42,14 +38,11 @@ SEED = 20260163
 
 
 def both(car, speed=SPEED, count=None):
-    """Diagnostics of a car with the phone and with the eight sensors, from the same drives."""
-    phone = Diagnostics.of(car, PHONE, (speed, speed), SECONDS, highest=40.0, count=count)
-    assert phone.at_wheels is not None
-    swapped = replace(phone.drives, features=phone.drives.features[::-1])
-    test = GainTest(swapped.features[0], len(EIGHT) * Bands.COUNT, TOGETHER)
-    modes = ModeFit(swapped.features[0], swapped.modes, swapped.of("level"), TOGETHER)
-    eight = replace(phone, channels=EIGHT, drives=swapped, learned=phone.at_wheels, gain_test=test, modes=modes)
-    return {"phone": phone, "eight": eight}
+    """Diagnostics of a car with the phone and with the eight sensors."""
+    return {
+        name: Diagnostics.of(car, channels, (speed, speed), SECONDS, highest=40.0, count=count)
+        for name, channels in {"phone": PHONE, "eight": EIGHT}.items()
+    }
 
 
 def record_of(samples, channels, rate=RATE):
