@@ -20,6 +20,7 @@ import numpy.typing as npt
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 from scenarios.verdict import Verdict, verdict
 from vehicle.arrays import Vector
+from vehicle.digits import finite
 from vehicle.runs.output.folder import write_text
 
 Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate", "not testable"]
@@ -292,5 +293,5 @@ def _plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_plain(member) for member in value]
     if isinstance(value, float):
-        return float(value) if math.isfinite(value) else None
+        return finite(value)
     return value

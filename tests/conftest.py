@@ -114,6 +114,18 @@ def car() -> Car:
 
 
 @pytest.fixture(scope="session")
+def sedan() -> Car:
+    """The shipped sedan."""
+    return Car.load("sedan")
+
+
+@pytest.fixture(scope="session")
+def road_car() -> Car:
+    """The car of Bommer 2006 on four wheels."""
+    return Car.load("focus_road")
+
+
+@pytest.fixture(scope="session")
 def high_piece() -> Signal:
     """The first four seconds of the shipped high input; it begins at rest."""
     signal = read_signal(find_input("high.csv"), wheel="fr")

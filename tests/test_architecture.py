@@ -89,7 +89,7 @@ ROOMS: dict[str, set[str]] = {
     "tables": {"formats"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "tables", "threads"},
     "mounts": {"formats", "parameters"},
-    "dampers": {"core", "formats", "parameters", "records", "rendering", "report", "threads"},
+    "dampers": {"car", "core", "formats", "laws", "parameters", "records", "rendering", "report", "threads"},
     "diagnosis": {"analysis", "car", "excitation", "formats", "laws", "linear", "output", "parameters", "records"}
     | {"reduced", "rendering", "report", "threads"},
     "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},

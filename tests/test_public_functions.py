@@ -29,16 +29,6 @@ from vehicle.studies.tuning.car_fit import ranges_of
 VISCOUS = "damper.viscous"
 
 
-@pytest.fixture(scope="module")
-def sedan():
-    return Car.load("sedan")
-
-
-@pytest.fixture(scope="module")
-def focus():
-    return Car.load()
-
-
 @pytest.fixture
 def record(tmp_path):
     """Acceleration with the mean of gravity."""
@@ -87,16 +77,16 @@ def test_a_sweep_runs_the_car_that_it_is_given(sedan):
         sweep(changed, {"rear.damper.viscous": [1500]}, "low.csv")
 
 
-def test_parameters_of_a_fit_start_at_the_car(focus):
-    (one,) = ranges_of(focus.vehicle, {VISCOUS: (500.0, 5000.0)})
-    assert (one.low, one.start, one.high) == (500.0, focus.vehicle.damper.viscous, 5000.0)
-    assert ranges_of(focus.vehicle, {VISCOUS: (500.0, 5000.0, 900.0)})[0].start == 900.0
+def test_parameters_of_a_fit_start_at_the_car(car):
+    (one,) = ranges_of(car.vehicle, {VISCOUS: (500.0, 5000.0)})
+    assert (one.low, one.start, one.high) == (500.0, car.vehicle.damper.viscous, 5000.0)
+    assert ranges_of(car.vehicle, {VISCOUS: (500.0, 5000.0, 900.0)})[0].start == 900.0
     with pytest.raises(ConfigurationError, match=r"must be \(lower, upper\)"):
-        ranges_of(focus.vehicle, {VISCOUS: (500.0,)})
+        ranges_of(car.vehicle, {VISCOUS: (500.0,)})
     with pytest.raises(ConfigurationError, match=r"did you mean front\.damper\.viscous"):
-        tune(focus, {"damper.vicsous": (1.0, 2.0)}, [])
+        tune(car, {"damper.vicsous": (1.0, 2.0)}, [])
     with pytest.raises(ConfigurationError, match="targets: the measurement is missing"):
-        tune(focus, {VISCOUS: (500.0, 5000.0)}, [])
+        tune(car, {VISCOUS: (500.0, 5000.0)}, [])
 
 
 def test_gravity_in_a_record_is_refused_until_it_is_removed(record):
@@ -110,28 +100,28 @@ def test_gravity_in_a_record_is_refused_until_it_is_removed(record):
         evaluate_comfort(record, offset="drop")
 
 
-def test_a_run_of_some_channels_is_not_saved(focus, tmp_path):
+def test_a_run_of_some_channels_is_not_saved(car, tmp_path):
     time = np.arange(0.0, 2.0, 1e-3)
     signal = Signal(time=time, displacement={"fr": 1e-3 * np.sin(60.0 * time)})
-    run = focus.run(signal, engine="reduced", channels=["seat_rail_acc_z"])
+    run = car.run(signal, engine="reduced", channels=["seat_rail_acc_z"])
     with pytest.raises(ConfigurationError, match="channel"):
         save_run(run, tmp_path / "mine")
     assert not (tmp_path / "mine").exists()
 
 
-def test_wrong_arguments_are_refused(focus, record, tmp_path):
+def test_wrong_arguments_are_refused(car, record, tmp_path):
     vary = {VISCOUS: (800.0, 4000.0)}
     for call, message in (
-        (lambda: focus.run("low.csv", skip=70.0), r"--skip 70 s: must be at least 0 and below the 60 s of low\.csv"),
+        (lambda: car.run("low.csv", skip=70.0), r"--skip 70 s: must be at least 0 and below the 60 s of low\.csv"),
         (lambda: compare(tmp_path, record, drift=0.2), "--drift 200000: must be"),
         (lambda: compare(tmp_path, record, bands=(9.0, 3.0)), "must be increasing frequencies"),
         (lambda: write_report("nowhere", "report.html"), "nowhere: is not a folder"),
         (lambda: write_report([tmp_path], "report.pdf"), r"the name must end in \.html"),
-        (lambda: optimise(focus, vary, "low.csv", ["unweighted"], cars=4), "--cars 4: must be at least 8"),
-        (lambda: optimise(focus, vary, "low.csv", ["unweighted"], samples=8), "only valid with tolerances"),
-        (lambda: optimise(focus, {VISCOUS: (1.0,)}, "low.csv", ["unweighted"]), r"must be \(lower, upper\)"),
-        (lambda: replicate_drive(focus, record, {"knuckle_fr_acc_z": "z"}, wheels=("fr", "fl")), "2 plates"),
-        (lambda: replicate_drive(focus, record, ["knuckle_fr_acc_z"], gain=2.0), "--gain 2: must be above 0"),
+        (lambda: optimise(car, vary, "low.csv", ["unweighted"], cars=4), "--cars 4: must be at least 8"),
+        (lambda: optimise(car, vary, "low.csv", ["unweighted"], samples=8), "only valid with tolerances"),
+        (lambda: optimise(car, {VISCOUS: (1.0,)}, "low.csv", ["unweighted"]), r"must be \(lower, upper\)"),
+        (lambda: replicate_drive(car, record, {"knuckle_fr_acc_z": "z"}, wheels=("fr", "fl")), "2 plates"),
+        (lambda: replicate_drive(car, record, ["knuckle_fr_acc_z"], gain=2.0), "--gain 2: must be above 0"),
     ):
         with pytest.raises(ConfigurationError, match=message):
             call()

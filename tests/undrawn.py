@@ -5,8 +5,6 @@ that plots draws its first figure of a process for real, so that one that cannot
 everything but the drawing runs. Tests outside `UNDRAWN` may look at their figures and draw all of them.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from functools import cache

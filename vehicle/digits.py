@@ -4,6 +4,19 @@ import math
 from collections.abc import Sequence
 
 
+def finite(value: float) -> float | None:
+    """Return a finite number, or an empty value for NaN and infinity, for which JSON has no sign."""
+    return float(value) if math.isfinite(value) else None
+
+
+def number_in(text: str) -> float:
+    """Return the number of a text; NaN for another text."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
 def rounded(value: float, digits: int) -> float:
     """Return a value rounded to a number of significant digits."""
     return float(f"{value:.{digits}g}")

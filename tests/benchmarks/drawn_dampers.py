@@ -49,7 +49,12 @@ def of_family(rng):
         known["coulomb"] = rng.uniform(30.0, 90.0)
     elif friction == "stribeck":
         sliding = rng.uniform(30.0, 60.0)
-        known["stribeck"] = (sliding, sliding * rng.uniform(1.4, 2.0), rng.uniform(0.008, 0.03))
+        at_rest, critical = sliding * rng.uniform(1.4, 2.0), rng.uniform(0.008, 0.03)
+        # The reference inverts the force, which must rise with the velocity: the friction falls by at most
+        # sqrt(2/e) (F_s - F_c)/v_s, at v_s/sqrt(2).
+        steepest = np.sqrt(2.0 / np.e) * (at_rest - sliding)
+        slopes = [known[side][0][0] for side in ("curve", "rebound", "bump") if side in known]
+        known["stribeck"] = (sliding, at_rest, max(critical, 1.1 * steepest / min(slopes)))
     elif friction != "none":
         known["sliders"] = _sliders(rng, 1 if friction == "one slider" else 2)
     if rng.random() < 0.4:
@@ -85,13 +90,17 @@ def outside(rng, number):
     return known
 
 
+def drawn(seed):
+    """Dampers of the family, then those outside."""
+    rng = np.random.default_rng(seed)
+    return [of_family(rng) for _ in range(COUNT)] + [outside(rng, number) for number in range(COUNT)]
+
+
 def main(seed):
     """Print the results of each damper, then all together."""
-    rng = np.random.default_rng(seed)
-    dampers = [of_family(rng) for _ in range(COUNT)] + [outside(rng, number) for number in range(COUNT)]
     right = inside = parameters = 0
     every = []
-    for number, known in enumerate(dampers):
+    for number, known in enumerate(drawn(seed)):
         begun = time.process_time()
         fit, rows = predictions(known, (seed, number), WITHOUT_FAST if number % 2 else WITHOUT_SLOW)
         print(f"{number:2d} {'without fast' if number % 2 else 'without slow'} tests: {fit.law.title}")

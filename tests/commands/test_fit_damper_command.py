@@ -18,7 +18,7 @@ from vehicle.model.parameters.toml_file import build
 from vehicle.studies.dampers.damper_fit import DamperFit
 from vehicle.studies.dampers.damper_law import DamperLaw
 from vehicle.studies.dampers.damper_test import read_test
-from vehicle.studies.dampers.damper_text import next_test, notice_lines, vehicle_lines
+from vehicle.studies.dampers.damper_text import notice_lines, vehicle_lines
 from vehicle.studies.dampers.fitted_damper import FittedDamper, fit_damper
 from vehicle.studies.dampers.over_condition import control_lines
 
@@ -47,7 +47,7 @@ def test_files_and_summary(tmp_path, capsys):
     assert main([*records(tmp_path), "--output", str(folder)]) == 0
     said = capsys.readouterr().out
     assert "chosen: linear damping + Coulomb friction" in said
-    assert "next: a test " in said and "would help most" in said
+    assert "next: a sine of " in said and "would reduce the uncertainty of the force from" in said
     assert "not determined: friction at rest" in said and "126 mm/s" in said and "10 mm/s" in said
     damper = build(Damper, tomllib.loads((folder / "damper.toml").read_text()), "damper")
     assert damper.viscous == pytest.approx(1200.0, rel=0.02) and damper.coulomb_friction == pytest.approx(60.0, abs=3.0)
@@ -61,9 +61,12 @@ def test_files_and_summary(tmp_path, capsys):
     assert (folder / "damper_tests.csv").read_text().count("\n") == 3
 
 
-def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_path):
+def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_path, capsys):
     files = records(tmp_path, (800.0, 2400.0), ("_0A", "_1A"))
-    assert main([*files, "--pattern", "*_{current}A", "--quiet", "--output", str(tmp_path / "out")]) == 0
+    assert main([*files, "--pattern", "*_{current}A", "--json", "--output", str(tmp_path / "out")]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {test["condition"] for test in found["next_tests"]} == {"current 0", "current 1"}
+    assert all(test["after"] <= test["before"] for test in found["next_tests"])
     names = {path.name for path in (tmp_path / "out").iterdir() if path.suffix in (".toml", ".png", ".csv")}
     assert names == {"damper_tests.csv", "damper_control.toml", "damper_control.png"} | {
         f"damper_{name}current_{current}.{ending}"
@@ -72,6 +75,7 @@ def test_a_current_gives_a_fit_each_and_the_limits_of_a_semi_active_damper(tmp_p
     }
     control = tomllib.loads((tmp_path / "out" / "damper_control.toml").read_text())
     assert control == pytest.approx({"minimum_damping": 800.0, "maximum_damping": 2400.0}, rel=0.02)
+    assert found["control"] == [f"damper.control.{name}={value!r}" for name, value in control.items()]
     laws = [tomllib.loads((tmp_path / "out" / f"damper_current_{n}.toml").read_text()) for n in (0, 1)]
     assert [law["tested"]["current"] for law in laws] == [[0.0, 0.0], [1.0, 1.0]]
     assert "# tested.current = [0.0, 1.0]" in (tmp_path / "out" / "damper_control.toml").read_text()
@@ -101,27 +105,6 @@ LAWS = {
     DamperLaw(friction="presliding", elements=3): [90.0, 1500.0, 40.0, 1e-4, 30.0, 2e-3, 20.0, 5e-4],
     DamperLaw(friction="coulomb", gas_stiffness=True): [90.0, 1500.0, 40.0, 3000.0],
 }
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("slower", "a test up to 63 mm/s would help most: its error may be 0.32, against 0.1 inside"),
-        ("faster", "a test up to 250 mm/s would help most: its error may be 0.32, against 0.1 inside"),
-        ("smaller", "a test with an amplitude below 4 mm would help most: its error may be 0.3, against 0.1 inside"),
-        ("larger", "a test with an amplitude above 20 mm would help most: its error may be 0.3, against 0.1 inside"),
-        ("", ""),
-    ],
-)
-def test_the_next_test_is_where_the_error_is_largest(tmp_path, monkeypatch, name, words):
-    """Errors of 0.3 in one range: by velocity sqrt(0.1^2 + 0.3^2) = 0.32 is expected, by amplitude 0.3 was left out."""
-    monkeypatch.setattr("vehicle.studies.dampers.damper_ranges._bend_beyond", lambda *_: (0.0, 0.0))
-    ranges = {each: np.zeros((2, 2)) for each in ("slower", "faster", "smaller", "larger")}
-    if name:
-        ranges[name][0] = 0.3
-    fit = DamperFit(law=DamperLaw(), parameters=np.array([150.0, 1200.0]), left_out=np.full(2, 0.1), ranges=ranges)
-    tests = [read_test(Path(path)) for path in records(tmp_path)]
-    assert next_test(FittedDamper(conditions={}, tests=tests, fit=fit, compared=[fit])) == words
 
 
 def test_a_notice_of_several_tests_is_said_once(tmp_path):

@@ -1,7 +1,5 @@
 """`python -m vehicle body participation`: tables, files and refusals."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`python -m vehicle spectra`: tables and pictures of one and two runs, a road, and what is refused."""
 
-from __future__ import annotations
-
 import csv
 
 import numpy as np

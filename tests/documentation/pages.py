@@ -15,8 +15,6 @@ processes of their own. After a change of messages, `python -m tests.documentati
 outputs.
 """
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import io
@@ -134,9 +132,6 @@ def first_difference(expected: list[str], lines: list[str]) -> str | None:
 WIDTH = {"COLUMNS": "80"}
 """Environment of the outputs on the pages: help texts are as wide as the terminal says."""
 
-BYTECODE = tempfile.TemporaryDirectory()
-"""Compiled modules that the processes of a session share."""
-
 
 def in_process(line: str) -> Callable[[], object] | None:
     """Return the call of a plain `python -m vehicle...`, `python -m scenarios...` or `python FILE.py`, or None."""
@@ -179,11 +174,11 @@ def output_of(line: str, folder: Path, call: Callable[[], Any] | None = None) ->
                 code = int(end.code or 0)
         return code, stream.getvalue()
     copied = (folder / "pyproject.toml").is_file()
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"} | {
+    environment = {
+        **os.environ,
         **WIDTH,
         "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
         "PYTHONPATH": str(folder if copied else ROOT),
-        "PYTHONPYCACHEPREFIX": BYTECODE.name,
     }
     done = subprocess.run(
         ["bash", "-c", line], cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

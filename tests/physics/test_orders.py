@@ -1,7 +1,5 @@
 """Orders at steady points: limits of the linear car, peaks at the modes, the command with its refusals and files."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -123,11 +123,6 @@ def rubber(factor=1.0):
     }
 
 
-@pytest.fixture(scope="module")
-def plain_car():
-    return Car.load("focus_road")
-
-
 def stiffened(car):
     """Return the changes of a car that add the tangent at rest of the friction to the stiffness."""
     changes = {}
@@ -140,16 +135,16 @@ def stiffened(car):
 
 
 @pytest.mark.parametrize("variant", [False, True])
-def test_matrices_have_the_tangent_at_rest(plain_car, variant):
+def test_matrices_have_the_tangent_at_rest(road_car, variant):
     """Of a built car and of a variant of a car with other friction; behind the sheet metal of the body too."""
     # The first corner of the shortest strokes is a tenth of the step of the differences.
     car = Car.load("focus_road", rubber(0.03))
     if variant:
         car = Car.load("focus_road", rubber()).with_(rubber(0.03))
-    stiff = plain_car.with_(stiffened(plain_car)).matrices.system
+    stiff = road_car.with_(stiffened(road_car)).matrices.system
     system, way = car.matrices.system, "of a variant" if variant else "of a built car"
-    assert np.max(np.abs(system.stiffness - plain_car.matrices.system.stiffness)) > 1e-4 * np.max(system.stiffness)
-    assert car.static.preload == pytest.approx(plain_car.static.preload, rel=1e-9, abs=1e-6)
+    assert np.max(np.abs(system.stiffness - road_car.matrices.system.stiffness)) > 1e-4 * np.max(system.stiffness)
+    assert car.static.preload == pytest.approx(road_car.static.preload, rel=1e-9, abs=1e-6)
     # Static loads share out by the elastic parts, which turns a part of the geometric stiffness.
     validated(
         "Linear system", f"stiffness matrix with rubber friction, {way}", system.stiffness, stiff.stiffness, peak=1e-6,
@@ -163,10 +158,10 @@ def test_matrices_have_the_tangent_at_rest(plain_car, variant):
     )  # fmt: skip
 
 
-def test_small_and_large_vibrations_of_a_car(plain_car):
+def test_small_and_large_vibrations_of_a_car(road_car):
     """Rubber that does not slide is a spring; the energy of rubber that slides is accounted for."""
     road = Road("A", speed=80, duration=2.5, period="record")
-    spring = plain_car.with_(stiffened(plain_car)).run(road)
+    spring = road_car.with_(stiffened(road_car)).run(road)
     stuck, sliding = (Car.load("focus_road", rubber(factor)).run(road) for factor in (400.0, 1.0))
     for name in ("seat rail z", "engine z", "knuckle fr z"):
         validated(

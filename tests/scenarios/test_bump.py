@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenarios.bump.__main__ import main
 from scenarios.bump.claims import PANELS, extreme_claims, no_slip_claim, slip_claims
 from scenarios.bump.figures import BANNER, HALF, side_by_side
 from scenarios.bump.linear_models import linear_claim
@@ -21,13 +20,6 @@ from scenarios.evidence import evidence_of
 from scenarios.signals.bump import bump
 from tests.scenarios.kept_table import contradictions
 from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("study") / "bump"
-    assert main(["--output", str(folder), "--quick"]) == 0
-    return folder
 
 
 @pytest.fixture(scope="module")

@@ -44,13 +44,6 @@ from vehicle.runs.output.written_files import MARKER
 from vehicle.studies.sweeps.case import Case
 
 
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("study") / "comfort"
-    assert main(["--output", str(folder), "--quick"]) == 0
-    return folder
-
-
 def test_quick_contradicts_no_verdict_of_the_full_study(results):
     assert contradictions("comfort_sensitivity", results) == []
 

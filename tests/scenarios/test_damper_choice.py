@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from scenarios.claims import Claim
-from scenarios.damper_choice.__main__ import main
 from scenarios.damper_choice.damper_curves import compare_curves
 from scenarios.damper_choice.other_vehicles import region_verdicts
 from scenarios.damper_choice.printed_determinant import (
@@ -25,13 +24,6 @@ from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.output.written_files import MARKER
 
 P = damper_choice_parameters()
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("study") / "damper_choice"
-    assert main(["--output", str(folder), "--quick"]) == 0
-    return folder
 
 
 def test_every_file_is_there_and_no_temporary_one(results):

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from scenarios.claims import PREDICTED
-from scenarios.half_car_rider.__main__ import main
 from scenarios.half_car_rider.claims import relative_changes
 from scenarios.half_car_rider.runs import SPEEDS, TIME_STEP, VARIED, outcome, parameter_study, passive
 from scenarios.half_car_rider.seats import MEASURES, STIFFNESS, seats, with_experiment
@@ -23,13 +22,6 @@ from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.analysis.exposure import vibration_dose_value
 
 CAR = half_car_rider_parameters()
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("study") / "half_car_rider"
-    assert main(["--output", str(folder), "--quick"]) == 0
-    return folder
 
 
 def test_every_file_is_there_and_no_temporary_one(results):

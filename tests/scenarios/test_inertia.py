@@ -11,7 +11,6 @@ from scenarios.evidence import status_of
 from scenarios.inertia import (
     MEASURED_DIGIT,
     loss_angle,
-    main,
     moment_about_cog,
     nearer_claim,
     roll_claims,
@@ -21,13 +20,6 @@ from scenarios.inertia import (
 from scenarios.rigid_modes import MEASURED_ROLL, rigid_modes, roll_mode
 from tests.scenarios.kept_table import contradictions
 from vehicle.runs.car import Car
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("study") / "inertia"
-    assert main(["--output", str(folder), "--quick"]) == 0
-    return folder
 
 
 def test_modes_are_judged_and_roll_peaks_need_a_long_record(results):

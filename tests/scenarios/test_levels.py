@@ -15,7 +15,6 @@ from scenarios.levels import (
     CHANNELS,
     LevelNumbers,
     frequency_claims,
-    main,
     order_claims,
     seat_claim,
     wheel_mode_claim,
@@ -24,13 +23,6 @@ from scenarios.slip_shares import OTHER_VELOCITIES, PUBLISHED_SLIP, slip_claims
 from tests.scenarios.kept_table import contradictions
 from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.analysis.peaks import phase_resonance
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("study") / "levels"
-    assert main(["--output", str(folder), "--quick"]) == 0
-    return folder
 
 
 def test_short_signals_judge_only_what_they_can(results):

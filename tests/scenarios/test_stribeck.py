@@ -7,19 +7,12 @@ import numpy as np
 import pytest
 
 from scenarios.signals.bump import bump
-from scenarios.stribeck import force_error, law_force, main, peak_claims
+from scenarios.stribeck import force_error, law_force, peak_claims
 from tests.scenarios.kept_table import contradictions
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.slip import extra_peaks, most_prominent, slip_phases
 
 TIME = np.arange(0.0, 1.0, 1e-3)
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("study") / "stribeck"
-    assert main(["--output", str(folder), "--quick"]) == 0
-    return folder
 
 
 def test_the_extra_peak_is_there_with_stribeck_alone(results):

@@ -1,7 +1,5 @@
 """An interruption that a library has swallowed is noticed at the next sign of progress."""
 
-from __future__ import annotations
-
 import io
 import os
 import re

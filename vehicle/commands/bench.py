@@ -13,7 +13,6 @@ from vehicle.commands.console import Console
 from vehicle.commands.input_options import input_of, signal_options
 from vehicle.commands.options import (
     car_argument,
-    car_of,
     command_parser,
     measure_option,
     message_options,
@@ -88,7 +87,7 @@ def parser() -> Parser:
 
 def settings_of(options: argparse.Namespace) -> BenchSettings:
     """Return the settings of the parsed options."""
-    return read(options, BenchSettings, source=input_of(options), car=car_of(options))
+    return read(options, BenchSettings, source=input_of(options))
 
 
 def _job(settings: BenchSettings, console: Console) -> None:

@@ -1,7 +1,5 @@
 """Check that a command accepts its files, and add the options of the findings on them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 

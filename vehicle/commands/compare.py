@@ -13,10 +13,8 @@ from vehicle.commands.console import Console, folded
 from vehicle.commands.input_options import record_options
 from vehicle.commands.measured_options import measured_options
 from vehicle.commands.options import (
-    car_of,
     command_parser,
     damper_option,
-    destination_of,
     figures_option,
     message_options,
     output_options,
@@ -128,8 +126,6 @@ def settings_of(options: argparse.Namespace) -> CompareSettings:
         CompareSettings,
         files=tuple(options.measured),
         measured=read(options, MeasuredSettings, measured=None),
-        car=car_of(options),
-        destination=destination_of(options),
     )
 
 

@@ -1,7 +1,5 @@
 """`python -m vehicle diagnose RECORD --vehicle car.toml --speed 80`: which damper is worn, the road unknown."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -13,9 +13,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.input_options import record_options
 from vehicle.commands.options import (
-    car_of,
     command_parser,
-    destination_of,
     figures_option,
     message_options,
     output_options,
@@ -90,7 +88,7 @@ def settings_of(options: argparse.Namespace) -> DriveCommand:
     """Return the settings of the parsed options."""
     wheels = [CORNERS[word] for word in options.wheels or ()] or None
     search = read(options, DriveSettings, wheels=wheels, delay=None)
-    return read(options, DriveCommand, search=search, car=car_of(options), destination=destination_of(options))
+    return read(options, DriveCommand, search=search)
 
 
 def _job(settings: DriveCommand, console: Console) -> None:

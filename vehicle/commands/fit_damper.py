@@ -8,8 +8,16 @@ from pathlib import Path
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.input_options import record_options
-from vehicle.commands.options import command_parser, head_options, message_options, output_options, setting_options
+from vehicle.commands.options import (
+    CAR_HELP,
+    command_parser,
+    head_options,
+    message_options,
+    output_options,
+    setting_options,
+)
 from vehicle.commands.parser import Parser
+from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.output.destination import Destination
 from vehicle.settings import Settings, part, setting
 from vehicle.signals.records.record_settings import RecordSettings
@@ -28,6 +36,7 @@ def parser() -> Parser:
     setting_options(parser, DamperFitSettings, "positive")  # fmt: skip
     setting_options(parser, DamperFitSettings, "condition")  # fmt: skip
     setting_options(parser, DamperFitSettings, "pattern")  # fmt: skip
+    setting_options(parser, DamperFitSettings, "vehicle", type=vehicle_file)
     output_options(parser, None, default=f"damper.toml, damper_band.csv, {TABLE}, pictures and {REPORT} in runs/damper")
     head_options(parser)
     parser.add_argument("--json", action="store_true", help="print law, parameters and errors as JSON")
@@ -72,6 +81,11 @@ class DamperFitSettings(Settings):
         "",
         metavar="PATTERN",
     )
+    vehicle: Path | None = setting(
+        "choose the next test for the velocities of the dampers of this car, on roads of class A, B and C at 80 km/h; "
+        f"{CAR_HELP}; default: 1 mm/s to 1 m/s, each octave alike",
+        metavar="FILE.toml",
+    )
     destination: Destination = part(Destination)
     author: str = ""
     project: str = ""
@@ -83,8 +97,16 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
     from vehicle.signals.records.choice import pairs
     from vehicle.studies.dampers.damper_band import band_of, band_text
     from vehicle.studies.dampers.damper_page import damper_page, loops_of
-    from vehicle.studies.dampers.damper_text import caption_of, fit_json, summary_lines, tests_text, vehicle_lines
+    from vehicle.studies.dampers.damper_text import (
+        caption_of,
+        fit_json,
+        set_lines,
+        summary_lines,
+        tests_text,
+        vehicle_lines,
+    )
     from vehicle.studies.dampers.fitted_damper import fit_damper
+    from vehicle.studies.dampers.next_tests import even_use, next_json, next_lines, next_tests
     from vehicle.studies.dampers.over_condition import control_lines, curve_lines
     from vehicle.studies.dampers.over_condition import settings_of as laws_of
 
@@ -97,11 +119,23 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
         pattern=settings.pattern,
         progress=console.progress("fit       "),
     )
+    use = even_use()
+    if settings.vehicle is not None:
+        from vehicle.runs.car import Car
+        from vehicle.studies.dampers.use_in_car import use_in_car
+
+        use = use_in_car(Car.load(settings.vehicle))
+    further = next_tests(fits, use)
     console.accept(text for fitted in fits for test in fitted.tests for text in test.notices)
     contents: dict[str, Content] = {
         TABLE: tests_text(fits),
         REPORT: damper_page(
-            fits, console.command("vehicle fit-damper"), author=settings.author, project=settings.project
+            fits,
+            console.command("vehicle fit-damper"),
+            further,
+            use,
+            author=settings.author,
+            project=settings.project,
         ),
     }
     for fitted in fits:
@@ -123,8 +157,11 @@ def _job(settings: DamperFitSettings, console: Console) -> None:
     texts = [fit_json(fitted) for fitted in fits]
     again = [False, *(fit.tests is following.tests for fit, following in itertools.pairwise(fits))]
     summary = [line for fitted, same in zip(fits, again, strict=True) for line in summary_lines(fitted, same)]
+    summary += next_lines(further, use)
     summary.append(f"files: {paths[0].parent}: {', '.join(path.name for path in paths)}")
-    console.result(texts[0] if len(texts) == 1 else {"dampers": texts}, "\n".join(summary))
+    control = set_lines(control_lines(fits), "damper.control")
+    result = texts[0] if len(texts) == 1 else {"dampers": texts, "control": control}
+    console.result(result | next_json(further, use), "\n".join(summary))
 
 
 main = command(parser, DamperFitSettings, _job)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,13 +12,10 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console, ProgressLine
 from vehicle.commands.options import (
     car_argument,
-    car_of,
     command_parser,
-    destination_of,
     figures_option,
     message_options,
     output_options,
-    read,
     setting_options,
 )
 from vehicle.commands.parser import Parser
@@ -122,11 +118,6 @@ class LevelSettings(Settings):
         metavar="K",
         within="[32, 8192]",
     )
-
-
-def settings_of(options: argparse.Namespace) -> LevelSettings:
-    """Return the settings of the parsed options."""
-    return read(options, LevelSettings, car=car_of(options), destination=destination_of(options))
 
 
 def levels_of(text: str, force: bool) -> tuple[Vector, str | None]:
@@ -251,4 +242,4 @@ def _random(
         console.notice(notice)
 
 
-main = command(parser, settings_of, _job)
+main = command(parser, LevelSettings, _job)

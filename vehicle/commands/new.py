@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
-from vehicle.commands.options import FORCE_HELP, command_parser, destination_of, message_options, read, setting_options
+from vehicle.commands.options import FORCE_HELP, command_parser, message_options, read, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.digits import number
 from vehicle.errors import ConfigurationError
@@ -137,7 +137,7 @@ def settings_of(options: argparse.Namespace) -> NewSettings:
     from vehicle.studies.design.stated_numbers import NAMES
 
     stated = {key: vars(options)[key] for key in (*NAMES, "tyre_size", "inertia", "car_class")}
-    return read(options, NewSettings, stated=stated, destination=destination_of(options))
+    return read(options, NewSettings, stated=stated)
 
 
 def _job(settings: NewSettings, console: Console) -> None:

@@ -11,9 +11,7 @@ from vehicle.commands.console import Console
 from vehicle.commands.input_options import inputs_of, signal_options
 from vehicle.commands.options import (
     acceleration_options,
-    car_of,
     command_parser,
-    destination_of,
     message_options,
     output_options,
     read,
@@ -114,16 +112,15 @@ def settings_of(options: argparse.Namespace) -> SearchStudy | TargetStudy:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.studies.optimisation.search_study import SearchStudy, TargetStudy
 
-    chosen = {"car": car_of(options), "destination": destination_of(options)}
     if options.targets is None:
-        return read(options, SearchStudy, inputs=inputs_of(options), **chosen)
+        return read(options, SearchStudy, inputs=inputs_of(options))
     for name in ("minimise", "maximise", "limits", "tolerances", "screen", "check", "beside", "resume"):
         if getattr(options, name):
             option = f"--{name.removesuffix('s')}"
             raise ConfigurationError(f"--targets already sets the limits; remove {option}")
     if options.input or options.road:
         raise ConfigurationError("--targets already sets the inputs; remove --input and --road")
-    return read(options, TargetStudy, **chosen)
+    return read(options, TargetStudy)
 
 
 def _job(study: SearchStudy | TargetStudy, console: Console) -> None:

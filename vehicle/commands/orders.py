@@ -1,16 +1,11 @@
 """`python -m vehicle orders`: orders of crankshaft or wheels at steady speeds, with their limits and modes."""
 
-import argparse
-
 from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.options import (
-    car_of,
     command_parser,
-    destination_of,
     extra_output_options,
     message_options,
-    read,
     setting_options,
     vehicle_options,
 )
@@ -32,17 +27,10 @@ def parser() -> Parser:
     return parser
 
 
-def settings_of(options: argparse.Namespace) -> OrderSettings:
-    """Return the settings of the parsed options."""
-    return read(
-        options, OrderSettings, car=car_of(options), destination=destination_of(options), words=tuple(options.words)
-    )
-
-
 def print_orders(settings: OrderSettings, console: Console) -> None:
     """Run the car at each speed, and print its orders."""
     study = order_study(settings)
     console.result(study.summary(), study)
 
 
-main = command(parser, settings_of, print_orders)
+main = command(parser, OrderSettings, print_orders)

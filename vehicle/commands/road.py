@@ -11,9 +11,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console
 from vehicle.commands.input_options import road_options
 from vehicle.commands.options import (
-    car_of,
     command_parser,
-    destination_of,
     figures_option,
     message_options,
     output_options,
@@ -99,7 +97,7 @@ def settings_of(options: argparse.Namespace) -> RoadCommand:
     if len(roads) != 1:
         raise ConfigurationError("road: give exactly one of --class, --profile and --obstacle")
     drive = read(options, DriveInput, road=roads[0])
-    return read(options, RoadCommand, drive=drive, car=car_of(options), destination=destination_of(options))
+    return read(options, RoadCommand, drive=drive)
 
 
 def _job(settings: RoadCommand, console: Console) -> None:

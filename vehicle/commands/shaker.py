@@ -20,9 +20,7 @@ from vehicle.commands.input_options import (
 from vehicle.commands.measured_options import measured_options
 from vehicle.commands.options import (
     acceleration_options,
-    car_of,
     command_parser,
-    destination_of,
     figures_option,
     message_options,
     output_options,
@@ -82,8 +80,7 @@ def parser() -> Parser:
 
 def settings_of(options: argparse.Namespace) -> ShakerSettings | OrderSettings:
     """Return the settings of the parsed options, or the settings of `orders` for steady speeds of the crankshaft."""
-    source, car, destination = input_of(options), car_of(options), destination_of(options)
-    settings = read(options, ShakerSettings, source=source, car=car, destination=destination)
+    settings = read(options, ShakerSettings, source=input_of(options))
     if settings.rpm is not None and settings.rpm.count(":") == 2:
         return _steady_points(settings, "engine" in options.given, options.speed)
     return settings

@@ -12,9 +12,7 @@ from vehicle.commands.console import Console
 from vehicle.commands.input_options import inputs_of, signal_options
 from vehicle.commands.options import (
     acceleration_options,
-    car_of,
     command_parser,
-    destination_of,
     message_options,
     output_options,
     read,
@@ -25,7 +23,6 @@ from vehicle.commands.options import (
 )
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.runs.output.destination import ReportChoice
 from vehicle.studies.sweeps.sweep_settings import SHIFT, SweepSettings
 
 if TYPE_CHECKING:
@@ -119,10 +116,7 @@ def settings_of(options: argparse.Namespace) -> SweepStudy:
         options,
         SweepStudy,
         design=_design(options),
-        car=car_of(options),
         inputs=inputs_of(options),
-        destination=destination_of(options),
-        report=read(options, ReportChoice),
         runs=read(options, SweepSettings, jobs=options.jobs),
     )
 

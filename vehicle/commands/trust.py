@@ -1,7 +1,5 @@
 """`python -m vehicle trust`: allow the native code of an FMU, list what is allowed, take it back."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass
 from pathlib import Path

@@ -11,9 +11,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.console import Console, folded
 from vehicle.commands.options import (
     CAR_HELP,
-    car_of,
     command_parser,
-    destination_of,
     head_options,
     message_options,
     output_options,
@@ -99,10 +97,8 @@ def settings_of(options: argparse.Namespace) -> TuningStudy:
     return read(
         options,
         TuningStudy,
-        car=car_of(options),
         parameters={each.path: (each.low, each.high) for each in options.parameters},
         measurements=read(options, MeasurementSettings, files=tuple(options.measurements), channels=channels),
-        destination=destination_of(options),
     )
 
 

@@ -1,7 +1,5 @@
 """Measurement files of the command `tune`: their options, and their settings."""
 
-from __future__ import annotations
-
 import argparse
 from dataclasses import replace
 from pathlib import Path

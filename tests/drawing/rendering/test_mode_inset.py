@@ -1,7 +1,5 @@
 """A mode beside a run: its own cycle in its own part of the frame, and the run as without it."""
 
-from __future__ import annotations
-
 import pytest
 
 from vehicle.commands.modes import modes_table

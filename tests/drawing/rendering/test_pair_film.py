@@ -1,7 +1,5 @@
 """Two cars side by side: each moves as its recording says, at the same time and to the same scale."""
 
-from __future__ import annotations
-
 import dataclasses
 import pickle
 from itertools import islice

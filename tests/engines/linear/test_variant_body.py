@@ -7,11 +7,6 @@ from tests.engines.linear.test_variant_matrices import require_same
 from vehicle.runs.car import Car
 
 
-@pytest.fixture(scope="module")
-def sedan():
-    return Car.load("sedan")
-
-
 @pytest.mark.parametrize(
     "changes",
     [["body.mass=1300"], ["body.cog=[2.3, 0.05, 0.95]"], ["body.cog.z=1.0", "body.mass=1300", "body.inertia.iyy=2100"]],

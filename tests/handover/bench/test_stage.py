@@ -44,11 +44,6 @@ def stage(server, car, drive):
 
 
 @pytest.fixture(scope="module")
-def road_car():
-    return Car.load("focus_road")
-
-
-@pytest.fixture(scope="module")
 def cleat(road_car):
     return bench_drive(road_car, road("cleat:20x50", 30))
 

@@ -3,13 +3,6 @@
 import numpy as np
 import pytest
 
-from vehicle.runs.car import Car
-
-
-@pytest.fixture(scope="module")
-def car():
-    return Car.load()
-
 
 def leaders(modes, group):
     """Select the modes in which a group of parts has the largest share of the kinetic energy."""

@@ -1,7 +1,5 @@
 """Body models with a single fault each: rejected with a one-line message and the exit code of the fault."""
 
-from __future__ import annotations
-
 import shutil
 import zipfile
 

@@ -1,7 +1,5 @@
 """Controllers in FMUs: the call against the own law, its timing, and FMUs that are refused."""
 
-from __future__ import annotations
-
 import json
 import sys
 import zipfile

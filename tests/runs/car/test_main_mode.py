@@ -1,7 +1,5 @@
 """The mode with the largest part in a run: of plates that swing at a natural frequency it is the mode of it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -23,11 +23,6 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return {kind: made_profile(folder / f"{kind}.csv", kind, 2, 2000.0) for kind in ("rising", "bumps")}
 
 
-@pytest.fixture(scope="module")
-def sedan() -> Car:
-    return Car.load("sedan")
-
-
 def misses(value: ProfileValue, whole: dict[str, float]) -> dict[str, float]:
     """Return the error of each value over half of its stated interval."""
     return {name: abs(each - whole[name]) / value.half_intervals[name] for name, each in value.values.items()}

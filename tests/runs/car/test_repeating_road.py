@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle import Car, road
+from vehicle import road
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car.class_value import class_values
 from vehicle.signals.excitation.road_drive import RoadDrive, evaluated_from
@@ -12,11 +12,6 @@ from vehicle.studies.sweeps.plan import plan_sweep
 
 RAIL = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")
 TWINNED = (*RAIL, *(f"damper_{wheel}_{what}" for wheel in ("fr", "fl", "rr", "rl") for what in ("velocity", "force")))
-
-
-@pytest.fixture(scope="module")
-def sedan():
-    return Car.load("sedan")
 
 
 def repeats_after(signal, start):

@@ -14,12 +14,6 @@ from vehicle.runs.car.road import lifting_tyres
 TABLE = {"front.damper.velocity": [-1, 1], "front.damper.force": [-1600, 1600]}
 
 
-@pytest.fixture(scope="module")
-def sedan() -> Car:
-    """Return the sedan."""
-    return Car.load("sedan")
-
-
 def test_the_estimate_is_the_mean_of_runs(sedan: Car):
     """Two runs of 10 s scatter by 0.2 %; the linearisation is 0.15 % low on class C, 0.3 % at most 95 of 100 times."""
     runs = [sedan.run(road("C", 80, duration=12, seed=seed), "reduced").comfort().values for seed in (1, 2)]

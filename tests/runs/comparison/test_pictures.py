@@ -1,7 +1,5 @@
 """Pictures of a comparison on axes of their own."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

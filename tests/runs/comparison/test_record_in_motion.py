@@ -5,15 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from vehicle import Car, compare
+from vehicle import compare
 from vehicle.signals.records.choice import Choice
 
 NAMES = ("plate_fl_displacement", "knuckle_fl_acc_z")
-
-
-@pytest.fixture(scope="module")
-def car():
-    return Car.load("focus")
 
 
 @pytest.fixture(scope="module")

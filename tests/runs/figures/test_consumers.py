@@ -102,7 +102,8 @@ def test_targets_report_and_page(run, saved, tmp_path, monkeypatch):
     assert report([saved[0], "--targets", str(file), *asked, "--quiet", "--output", "a.html"]) == 0
     page = (tmp_path / "a.html").read_text(encoding="utf-8")
     value = f"{run.figure(NAME):.3g}"
-    assert "<td>crest</td>" in page and page.count(f'<td class="number">{value}</td>') == 2
+    # In the verdict, which judges it on a random road without knowing its error, and in the table of figures.
+    assert "<td>crest</td>" in page and f"{value} ± ?" in page and page.count(f'<td class="number">{value}</td>') == 1
     assert f"<td>{WORDS}</td>" in page and "misses crest" in page
     found = re.search(r'id="trial-data"[^>]*>(.*?)</script>', page, re.DOTALL)
     assert found is not None

@@ -1,7 +1,5 @@
 """Report of more runs than have pictures of their own."""
 
-from __future__ import annotations
-
 import dataclasses
 import re
 from pathlib import Path

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle import Car, road
+from vehicle import road
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.figures.catalogue import FIGURES
@@ -50,11 +50,6 @@ def value_of(target, ride):
 def figure(quantity, **keys):
     unit = FIGURES[quantity].unit or "m/s2"
     return Target(**{"quantity": quantity, "unit": unit, "at_most": 1.0, **keys})
-
-
-@pytest.fixture(scope="module")
-def sedan():
-    return Car.load("sedan")
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """SEAT value: of a known transmissibility in closed form, by the command, in the summary, in a sweep."""
 
-from __future__ import annotations
-
 import csv
 import json
 

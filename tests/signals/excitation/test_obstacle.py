@@ -1,7 +1,5 @@
 """Obstacles on a level road: texts, shapes, contact, drives and the values of a run."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Roads of files: profiles over distance, OpenCRG and ERD; and roads over time together with a speed."""
 
-from __future__ import annotations
-
 import struct
 
 import numpy as np

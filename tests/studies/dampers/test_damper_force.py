@@ -7,7 +7,7 @@ import scipy
 from tests.validation import validated
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.jenkins import Jenkins
-from vehicle.studies.dampers.damper_force import Motion, force_and_slopes
+from vehicle.studies.dampers.damper_force import Motion, force_and_slopes, joined
 from vehicle.studies.dampers.damper_law import DamperLaw
 
 NUMBERS = {
@@ -56,6 +56,17 @@ def test_the_derivatives_are_those_of_differences(law):
         close = np.isclose(slopes[:, at], difference, atol=1e-4 * np.max(np.abs(difference)))
         # A sample at which a slider begins to slip within the difference has neither derivative.
         assert np.mean(close) > 0.995, name
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.title)
+def test_tests_in_one_pass_have_the_forces_of_each(law):
+    """The second test begins at its own force, without the sliders and the deflection of the first."""
+    whole = motion(-100.0)
+    part = Motion(whole.time[300:900], whole.displacement[300:900], whole.velocity[300:900], 250.0, parts=2)
+    both = force_and_slopes(law, numbers(law), joined([whole, part]))
+    each = zip(*(force_and_slopes(law, numbers(law), one) for one in (whole, part)), strict=True)
+    for found, expected in zip(both, each, strict=True):
+        np.testing.assert_allclose(found, np.concatenate(expected), rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("series", [False, True])

@@ -31,11 +31,6 @@ def targets(weighted, travel):
     }
 
 
-@pytest.fixture(scope="module")
-def sedan():
-    return Car.load("sedan")
-
-
 RANGES = (
     Range(path="rear.damper.viscous", low=800.0, high=3000.0),
     Range(path="front.bushings.tyre.stiffness.z", low=1.7e5, high=2.7e5),

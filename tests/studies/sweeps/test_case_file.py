@@ -1,7 +1,5 @@
 """Cases of a file: every value is that of its single run; names, changes, sentence, resumed sweeps, wrong files."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Tasks of many cases: size from the computing time, and recovery from a case that kills its worker."""
 
-from __future__ import annotations
-
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 

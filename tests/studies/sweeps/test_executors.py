@@ -1,7 +1,5 @@
 """Executors of a sweep: number of submitted tasks, broken executors, workers with another program."""
 
-from __future__ import annotations
-
 import errno
 import math
 from concurrent.futures import Executor, Future, ThreadPoolExecutor

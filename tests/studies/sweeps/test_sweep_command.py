@@ -1,7 +1,5 @@
 """`python -m vehicle sweep` as a user runs it."""
 
-from __future__ import annotations
-
 import argparse
 import re
 from contextlib import ExitStack

@@ -1,7 +1,5 @@
 """`python -m vehicle body build`: compute the frame of a body design on the points of a car."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """`python -m vehicle body rigid`: mass, centre of gravity and inertia of a hung body from its FRFs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ The outline is a grid of stations along the car by six columns across it: lower 
 then of the left side. Outside the windows the roof is the waist. Lines, rods and sheets of all pictures come from it.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Settings of the film of a run, each declared once: for Python and the options of commands."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any

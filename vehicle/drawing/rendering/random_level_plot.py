@@ -1,7 +1,5 @@
 """Picture of FRFs at levels of a random input, with the distortion around them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

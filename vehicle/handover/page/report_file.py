@@ -1,7 +1,5 @@
 """Report of finished runs as a file."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path

@@ -1,8 +1,6 @@
 """Settings of a run on the shaker or a road with all its files, each declared once."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.drawing.rendering.film_settings import FilmSettings
@@ -30,8 +28,8 @@ class ShakerSettings(Settings):
     """
 
     source: PlateSettings | DriveInput
-    car: CarChoice = field(default_factory=CarChoice)
-    destination: Destination = field(default_factory=Destination)
+    car: CarChoice = part(CarChoice)
+    destination: Destination = part(Destination)
     film: FilmSettings = part(FilmSettings)
     measured: MeasuredSettings = part(MeasuredSettings)
     report: ReportChoice = part(ReportChoice)

@@ -1,7 +1,5 @@
 """Controllers of semi-active dampers: one FMU for all dampers of a car, and the trust in their native code."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from vehicle.core.trusted_code import trust

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from vehicle.digits import number_in
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import meant
 from vehicle.names import AXES
@@ -162,7 +163,7 @@ def parsed_variation(option: str, text: str) -> Variation:
             f"{typed}: must be PATH=A,B,C, PATH=A:B:N or PATH=A:B, for example damper.coulomb_friction=62.5,125; "
             "a component of a vector ends with its axis: bushings.tyre.stiffness.z=2e5,2.5e5"
         )
-    parts = [_number(part) for part in content.split(":")]
+    parts = [number_in(part) for part in content.split(":")]
     if len(items) > 1 or len(parts) == 1 or all(math.isnan(part) for part in parts):
         return Variation(option=typed, path=path, values=items)
     if len(parts) not in (2, 3) or not all(math.isfinite(part) for part in parts):
@@ -178,13 +179,6 @@ def parsed_variation(option: str, text: str) -> Variation:
     # The rounding of the sum must not show in the table: 12 digits.
     spaced = (low + (high - low) * index / (count - 1) for index in range(count))
     return Variation(option=typed, path=path, values=tuple(f"{float(f'{value:.12g}')!r}" for value in spaced))
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
 
 
 def checked_ranges(ranges: Sequence[Range]) -> tuple[Range, ...]:

@@ -1,7 +1,5 @@
 """Masses, loads, stiffnesses, frequencies, geometry and parameters of a car."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence

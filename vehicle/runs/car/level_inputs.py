@@ -1,7 +1,5 @@
 """Sinusoidal inputs of a car: shares of its plates or of its applied forces in one level, with their phases."""
 
-from __future__ import annotations
-
 import cmath
 import re
 from collections.abc import Mapping, Sequence

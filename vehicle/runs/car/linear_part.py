@@ -5,8 +5,6 @@ from the responses of the base car (`vehicle.engines.reduced.line_ports`). Ports
 change, and then a tenth of the time that new poles take, so they pay in studies of many cars.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache

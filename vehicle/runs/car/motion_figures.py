@@ -5,12 +5,12 @@ its mass and its rates. A mode contains several motions, so a mode is never the 
 each with its share of this motion in its kinetic energy (`vehicle.engines.linear.motion_names`).
 """
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from vehicle.digits import finite
 from vehicle.engines.kinematics.axle_ride import DAMPER_VELOCITY, DamperState, axle_rides, damper_constant
 from vehicle.engines.kinematics.ride_figures import ride_figures
 from vehicle.engines.linear.car_modes import Mode
@@ -72,8 +72,8 @@ def motion_figures(car: Any, states: tuple[DamperState, ...] = STATES) -> tuple[
             MotionFigure(
                 motion=motion,
                 dampers=state,
-                frequency_hz=_defined(figure.frequency_hz),
-                damping_ratio=_defined(figure.damping_ratio),
+                frequency_hz=finite(figure.frequency_hz),
+                damping_ratio=finite(figure.damping_ratio),
                 modes=tuple(_modes(modes, motion)),
             )
             for motion, figure in ride_figures(still, axle_rides(still, state)).items()
@@ -123,7 +123,3 @@ def damper_notes(car: Any) -> Iterator[str]:
                 f"{at_velocity:.0f} N s/m; modes with sliding dampers take their smallest slope, that of fast motion, "
                 f"{smallest:.0f} N s/m: their damping is smaller"
             )
-
-
-def _defined(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -14,8 +14,6 @@ damper, come from the run, where each piece has the weight 1/p_s, as in the whol
 above all, is in the ratios of the run pieces, whose spread is the stated error.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

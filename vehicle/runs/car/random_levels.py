@@ -1,7 +1,5 @@
 """FRFs of a car at levels of a random input: best linear approximation, and the distortion around it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any

@@ -1,7 +1,5 @@
 """A road as the input of a run: a class of ISO 8608, a measured profile or an obstacle, and the speed of the car."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field

@@ -7,8 +7,6 @@ an error (docs/theory/estimate.md). Cars on which this error is large or unknown
 (`vehicle.runs.car.estimate_limits`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache

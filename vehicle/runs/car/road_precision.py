@@ -12,8 +12,6 @@ in whole seconds. A pilot of this length confirms it, or gives the next T'.
 Source: Kelton and Law, Simulation Modeling and Analysis, section 9.4: relative precision by sequential runs.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any, TypeVar

@@ -1,7 +1,5 @@
 """A measurement of any format, or another run, compared with a run or the folder of a run."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Result of a comparison, with its tables for the console, CSV and JSON, largest errors first."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -9,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.digits import number
+from vehicle.digits import finite, number
 from vehicle.errors import ConfigurationError
 from vehicle.runs.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.runs.comparison.record_comparison import RecordComparison
@@ -280,7 +278,7 @@ def _mean(values: Any) -> float:
 def _plain(value: Any) -> Any:
     """Return a value for JSON; None for NaN and infinity."""
     if isinstance(value, (float, np.floating)):
-        return float(value) if math.isfinite(value) else None
+        return finite(float(value))
     return value
 
 

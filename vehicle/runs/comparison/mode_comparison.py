@@ -1,7 +1,5 @@
 """Comparison of measured mode shapes with those of the car: MAC, AutoMAC, pairs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Ride figure: one record with name, meaning, unit, what it reads and how it is reduced to a number."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Batch of runs of several cars on one signal, of which a figure is computed."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 

@@ -1,7 +1,5 @@
 """Files of a comparison: tables, and a picture for each output point."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from vehicle.runs.car import Run

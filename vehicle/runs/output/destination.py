@@ -1,7 +1,5 @@
 """Destination of results from --output and --force; chosen and locked before anything is computed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field

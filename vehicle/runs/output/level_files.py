@@ -1,7 +1,5 @@
 """Files of the periodic states of a car over frequency and level: tables, pictures and summary."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -11,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.digits import aligned, number
+from vehicle.digits import aligned, finite, number
 from vehicle.drawing.rendering.level_plot import LevelPicture, plot_level_damping, plot_level_map
 from vehicle.names import channel_words, side_of
 from vehicle.runs.car.levels import LevelMap
@@ -215,17 +213,13 @@ def summary_of(report: LevelReport, files: Sequence[str]) -> dict[str, Any]:
         },
         "band_hz": list(report.around),
         "peak": [
-            {"level": level, "frequency_hz": _number(f), "frf": _number(value), "mode_hz": _number(mode),
-             "damping_ratio": _number(share)}
+            {"level": level, "frequency_hz": finite(f), "frf": finite(value), "mode_hz": finite(mode),
+             "damping_ratio": finite(share)}
             for level, f, value, mode, share in zip(levels, at, height, natural, ratio, strict=True)
         ],
         "notices": states.notices,
         "files": list(files),
     }  # fmt: skip
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def write_levels(
@@ -315,7 +309,7 @@ def peak_table(report: LevelReport) -> tuple[tuple[str, ...], list[list[str]]]:
         f"level [{report.states.driven.shown[1]}]", f"peak [{report.per_level}]", "at [Hz]", "mode [Hz]", "damping [%]"
     )  # fmt: skip
     rows = [
-        [number(report.shown_levels[row]), *(number(_number(value)) for value in
+        [number(report.shown_levels[row]), *(number(finite(value)) for value in
          (height[row], frequency[row], natural[row], 100.0 * ratio[row]))]
         for row in report.rows
     ]  # fmt: skip
@@ -335,7 +329,7 @@ def printed_cut(report: LevelReport, cut: LevelMap) -> str:
     heads = [f"level [{cut.driven.shown[1]}]", f"FRF [{report.per_level}]", f"RMS [{unit}]", f"peak [{unit}]",
              "distortion [%]", *(f"slip {damper.removeprefix('damper_')} [%]" for damper in cut.dampers)]  # fmt: skip
     table = [
-        [number(report.shown_levels[row]), *(number(_number(value)) for value in (
+        [number(report.shown_levels[row]), *(number(finite(value)) for value in (
             abs(cut.frf[0, 0, row]), cut.rms[0, 0, row], cut.peak[0, 0, row], 100.0 * cut.distortion[0, 0, row],
             *(100.0 * cut.slip[:, 0, row])))]
         for row in report.rows

@@ -1,7 +1,5 @@
 """A car as a vehicle file, with copies of the templates and the body model of a user beside it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Files of FRFs at levels of a random input: table, picture and summary."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -9,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.digits import aligned, number
+from vehicle.digits import aligned, finite, number
 from vehicle.drawing.rendering.random_level_plot import plot_random_levels
 from vehicle.names import channel_words
 from vehicle.runs.car.random_levels import LINEAR_FROM, RandomLevelMap
@@ -49,11 +47,11 @@ def random_summary(states: RandomLevelMap, files: Sequence[str]) -> dict[str, An
         "level_mm_rms": (1e3 * states.level).tolist(),
         "channels": list(states.channels),
         "without_result": int(np.sum(~states.ended)),
-        "rms": {name: [value if np.isfinite(value) else None for value in values.tolist()]
+        "rms": {name: [*map(finite, values.tolist())]
                 for name, values in zip(states.channels, mean, strict=True)},
-        "rms_standard_error": {name: [value if np.isfinite(value) else None for value in values.tolist()]
+        "rms_standard_error": {name: [*map(finite, values.tolist())]
                                for name, values in zip(states.channels, deviation, strict=True)},
-        "slip_share": {name: [value if np.isfinite(value) else None for value in values.tolist()]
+        "slip_share": {name: [*map(finite, values.tolist())]
                        for name, values in zip(states.dampers, states.slip, strict=True)},
         "notices": states.notices,
         "files": list(files),
@@ -109,7 +107,7 @@ def printed_random(states: RandomLevelMap, folder: Path, files: Sequence[str]) -
         whole = np.sqrt(np.sum(weight * states.scatter[0] ** 2, axis=0)
                         / np.sum(weight * np.abs(states.frf[0]) ** 2, axis=0))  # fmt: skip
     table = [
-        [number(1e3 * level), *(number(value if np.isfinite(value) else None) for value in (
+        [number(1e3 * level), *(number(finite(value)) for value in (
             mean[0, row], 2.0 * deviation[0, row], 100.0 * whole[row], *(100.0 * states.slip[:, row])))]
         for row, level in enumerate(states.level.tolist())
     ]  # fmt: skip

@@ -1,8 +1,8 @@
 """Values of a run over an obstacle: peak-to-peak acceleration, dose, settling time, peaks of the knuckles."""
 
-import math
 from collections.abc import Sequence
 
+from vehicle.digits import finite
 from vehicle.names import AXES
 from vehicle.runs.car import Run
 from vehicle.runs.figures.run_batch import evaluated
@@ -30,8 +30,7 @@ def obstacle_values(run: Run) -> ObstacleSummary | None:
         return shown_figures([figure], runs, "obstacle")[0].value
 
     def settling(point: str) -> float | None:
-        seconds = value(f"settling:{point}_acc_z")
-        return seconds if math.isfinite(seconds) else None
+        return finite(value(f"settling:{point}_acc_z"))
 
     def doses(point: str) -> dict[str, float]:
         names = [f"{point}_acc_{axis}" for axis in AXES]

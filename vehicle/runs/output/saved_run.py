@@ -1,7 +1,5 @@
 """Folder of a run, with the same files as the command `shaker`: written from a run, and read as a run."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -9,9 +9,6 @@ from pathlib import Path
 from vehicle.errors import ConfigurationError
 from vehicle.runs.figures.chosen_figure import ChosenFigure
 
-INPUTS = ("road", "obstacle", "signal", "speed", "run")
-"""Keys that choose the runs of a target."""
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Target(ChosenFigure):

@@ -1,7 +1,5 @@
 """Speed of the crankshaft of a run: a speed, a run-up, or a channel of the file of the plates."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from vehicle.errors import ConfigurationError

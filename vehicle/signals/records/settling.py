@@ -1,7 +1,5 @@
 """Settling of a run that begins at rest while the record of its signal is in motion."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 RAMP_WORDS = "half-cosine ramp"

@@ -103,7 +103,8 @@ def fitted_beyond_lag(
         if np.exp((delay - begin) / lag) <= LEFT or begin == longest:
             break
         begin = min(delay + LAGS * lag, longest)
-    text = f"the first {number(begin, 2)} s are not fitted: the damper follows {setting.name} with a lag of {lag:.2g} s"
+    follows = f"the damper follows {setting.name} with a lag of {number(lag, 2)} s"
+    text = f"the first {number(begin, 2)} s are not fitted: {follows}"
     if begin == longest:
         text += f"; what {setting.name} was before the record may still count: record longer"
     noted = [dataclasses.replace(test, notices=(*test.notices, text)) for test in later] if begin != BEGIN else later

@@ -40,9 +40,10 @@ from vehicle.studies.dampers.damper_fit import (
     squares_of,
 )
 from vehicle.studies.dampers.damper_law import DamperLaw
-from vehicle.studies.dampers.damper_ranges import range_errors
+from vehicle.studies.dampers.damper_ranges import law_differences, range_errors
 from vehicle.studies.dampers.damper_starts import first_start, starts_from_larger, starts_of
 from vehicle.studies.dampers.damper_test import DamperTest
+from vehicle.studies.dampers.joint_tests import joint
 from vehicle.studies.dampers.waveform import reversals
 from vehicle.threads import one_blas_thread
 
@@ -111,6 +112,7 @@ def folds_of(tests: Sequence[DamperTest]) -> list[list[Mask]]:
 
 def judged(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector]) -> DamperFit:
     """Fit a law to all tests, and without each fold in turn; return the fit with its errors on what was left out."""
+    tests = joint(tests)
     parameters = fit_law(tests, law, starts)
     squares = np.full((len(tests), BLOCKS), np.nan)
     left_out = np.zeros(len(tests))
@@ -167,7 +169,7 @@ def choose_law(
     """
     if not tests:
         raise DataError("the tests are missing; name at least one file with a damper test")
-    few = [thinned(test) for test in tests]
+    few = joint([thinned(test) for test in tests])
     fits = LawSearch(few, progress).run()
     compared = sorted(fits.values(), key=lambda fit: fit.left_out_error)
     errors = standard_errors(few, compared[0])
@@ -177,10 +179,13 @@ def choose_law(
         for fit, within in zip(compared, accepted, strict=True)
     ]
     chosen = min(compared, key=lambda fit: (not fit.accepted, len(fit.law.parameters), fit.left_out_error))
+    tests = joint(tests)
     whole = judged(tests, chosen.law, [chosen.parameters])
     chosen = dataclasses.replace(
         finished(tests, whole), ranges=chosen.ranges, accepted=True, tolerance=tolerance_of(errors)
     )
+    within = [fit for fit in compared if fit.accepted]
+    chosen = dataclasses.replace(chosen, differences=law_differences(few, chosen, within))
     return chosen, compared
 
 

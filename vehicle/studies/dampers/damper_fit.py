@@ -10,6 +10,8 @@ any way), or of independent residuals of equal size in each test where these are
 
     cov = H^-1 (sum over blocks of g_b g_b') H^-1 B/(B - 1),   H = J'J,   g_b = J_b' r_b.
 
+A positive parameter has the standard deviation 1 of its logarithm before the tests.
+
 Source of the blocks: Liang and Zeger, Biometrika 73 (1986).
 """
 
@@ -26,9 +28,13 @@ from vehicle.arrays import Mask, Vector
 from vehicle.studies.dampers.damper_force import force_and_slopes
 from vehicle.studies.dampers.damper_law import FIRM, LINEAR, DamperLaw, plain_parameters, sums_of
 from vehicle.studies.dampers.damper_test import DamperTest
+from vehicle.studies.dampers.joint_tests import joint
 
 DETERMINED = 0.5
 """Maximum relative standard error of a parameter that the tests determine."""
+
+TRACE = 1.28
+"""Standard errors of an upper limit in nine of ten cases (normal distribution)."""
 
 LARGEST = 1e6
 """Largest square of an error over the standard deviation of the force; larger or infinite errors count as this."""
@@ -73,13 +79,25 @@ class DamperFit:
     tolerance: float = np.nan  # of the logarithm of the error left out, in the choice of this law
     # errors of ranges that the fit does not contain, see `damper_choice.range_errors`: range to (tests,)
     ranges: Mapping[str, Vector] = field(default_factory=dict)
-    systematic: float = np.inf  # RMS of the systematic part of the residuals, over the standard deviation of the force
+    # upper limit of the RMS of the systematic part of the residuals, over the standard deviation of the force
+    systematic: float = np.inf
+    # mean squares by which the accepted laws differ below the tests, by octaves; see `damper_ranges.law_differences`
+    differences: Vector = field(default_factory=lambda: np.zeros(1))
     half_of: DamperLaw | None = None  # law with a changing setting, of which this is the soft or the firm one
 
     @property
     def left_out_error(self) -> float:
         """Geometric mean of the RMS errors left out and `FLOOR`, over the standard deviation of the force."""
         return float(np.exp(np.mean(self.logarithms)))
+
+    @property
+    def further(self) -> Vector:
+        """Return the errors of whole tests left out; NaN with a single test; (tests,).
+
+        With two tests these are the errors in each by the fit to the other: parts of a record left out are inside what
+        the fit has seen.
+        """
+        return self.left_out if "other" not in self.ranges else self.ranges["other"][0]
 
     @property
     def logarithms(self) -> Vector:
@@ -135,8 +153,12 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
         evaluations: maximum number of evaluations of a start.
         tolerance: relative change of cost and parameters at which a fit ends.
     """
+    group = joint(tests)
     chosen = [test.settled for test in tests] if masks is None else masks
-    used = [(test, mask) for test, mask in zip(tests, chosen, strict=True) if mask.any()]
+    used = np.concatenate(chosen)
+    measured = np.concatenate([test.force for test in tests])[used]
+    weight = np.concatenate([np.sqrt(test.weights[mask] / np.sum(test.weights[mask])) / test.scale
+                             for test, mask in zip(tests, chosen, strict=True) if mask.any()])  # fmt: skip
     linear = np.array([name in LINEAR for name in law.parameters])
     scale = np.array([LINEAR.get(name, 1.0) for name in law.parameters])
     low, high = limits_of(law)
@@ -152,17 +174,12 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
     def evaluate(inner: Vector) -> tuple[Vector, Vector]:
         key = inner.tobytes()
         if key not in last:
-            values, rows, columns = plain(inner), [], []
-            for test, mask in used:
-                # A step of the search may overflow: the search refuses it, and takes a shorter one.
-                with np.errstate(over="ignore", invalid="ignore"):
-                    force, slopes = force_and_slopes(law, values, test.motion)
-                share = test.weights[mask]
-                weight = np.sqrt(share / np.sum(share)) / test.scale
-                rows.append(weight * (force - test.force)[mask])
-                columns.append(weight[:, None] * slopes[mask] * np.where(linear, scale, values))
+            values = plain(inner)
+            # A step of the search may overflow: the search refuses it, and takes a shorter one.
+            force, slopes = group.force_and_slopes(law, values)
+            columns = weight[:, None] * slopes[used] * np.where(linear, scale, values)
             # QR gives few rows with the same sum of squares, slopes and curvature.
-            both = np.column_stack([np.concatenate(columns), np.concatenate(rows)])
+            both = np.column_stack([columns, weight * (force[used] - measured)])
             triangle = np.asarray(np.linalg.qr(both, mode="r"))
             last.clear()
             last[key] = triangle[:, -1], triangle[:, :-1]
@@ -183,11 +200,11 @@ def fit_law(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector
 
 def squares_of(tests: Sequence[DamperTest], law: DamperLaw, parameters: Vector) -> list[Vector]:
     """Return the squares of the errors of a law over the variance of the force in each test, at most `LARGEST`."""
+    group = joint(tests)
     squares = []
-    for test in tests:
+    for test, force in zip(group, group.split(group.force_and_slopes(law, parameters)[0]), strict=True):
         with np.errstate(over="ignore", invalid="ignore"):
-            error = (force_and_slopes(law, parameters, test.motion)[0] - test.force) / test.scale
-            squares.append(np.minimum(np.nan_to_num(error**2, nan=LARGEST), LARGEST))
+            squares.append(np.minimum(np.nan_to_num(((force - test.force) / test.scale) ** 2, nan=LARGEST), LARGEST))
     return squares
 
 
@@ -201,17 +218,20 @@ def fitted_squares(tests: Sequence[DamperTest], law: DamperLaw, parameters: Vect
 
 def finished(tests: Sequence[DamperTest], fit: DamperFit) -> DamperFit:
     """Return a fit of all samples, with standard errors and the errors of each test."""
-    parameters = fit_law(tests, fit.law, [fit.parameters], tolerance=1e-7)
-    # Neighbours have independent noise: their mean product is the square of what they have in common.
-    common = [
-        np.mean(residual[1:] * residual[:-1])
-        for residual in ((fit.force(test)[test.settled] - test.force[test.settled]) / test.scale for test in tests)
-    ]
-    spreads = covariances(tests, fit.law, parameters)
-    squares = squares_of(tests, fit.law, parameters)
+    group = joint(tests)
+    parameters = fit_law(group, fit.law, [fit.parameters], tolerance=1e-7)
+    forces = group.split(group.force_and_slopes(fit.law, parameters)[0])
+    residuals = [(force - test.force)[test.settled] / test.scale for test, force in zip(group, forces, strict=True)]
+    # Neighbours have independent noise: their mean product is the square of what they have in common. Noise alone gives
+    # it the standard error mean(r^2)/sqrt(n).
+    common = np.array([np.mean(each[1:] * each[:-1]) for each in residuals])
+    noise = np.array([np.mean(each**2) / np.sqrt(each.size) for each in residuals])
+    trace = max(float(np.mean(common)), 0.0) + TRACE * float(np.sqrt(np.sum(noise**2))) / noise.size
+    spreads = covariances(group, fit.law, parameters)
+    squares = squares_of(group, fit.law, parameters)
     return dataclasses.replace(
-        fit, parameters=parameters, spreads=spreads, systematic=float(np.sqrt(max(np.mean(common), 0.0))),
-        errors=deviations(spreads, sums_of(fit.law)), fitted=np.sqrt(fitted_squares(tests, fit.law, parameters)),
+        fit, parameters=parameters, spreads=spreads, systematic=float(np.sqrt(trace)),
+        errors=deviations(spreads, sums_of(fit.law)), fitted=np.sqrt(fitted_squares(group, fit.law, parameters)),
         whole=np.sqrt([np.mean(each) for each in squares]),
     )  # fmt: skip
 
@@ -228,11 +248,12 @@ def covariances(
     sizes = np.maximum(np.abs(parameters), [0.01 * LINEAR.get(name, 0.0) for name in law.parameters])
     scores, curvature = [], np.zeros((parameters.size,) * 2)
     noise = np.zeros_like(curvature)
-    for test, mask in zip(tests, [test.settled for test in tests] if masks is None else masks, strict=True):
+    group = joint(tests)
+    both = (group.split(each) for each in group.force_and_slopes(law, parameters))
+    chosen = [test.settled for test in tests] if masks is None else masks
+    for test, mask, force, slopes in zip(tests, chosen, *both, strict=True):
         if not mask.any():
             continue
-        with np.errstate(over="ignore", invalid="ignore"):
-            force, slopes = force_and_slopes(law, parameters, test.motion)
         error = (force - test.force) / test.scale
         shares = np.where(mask, test.weights, 0.0) / np.sum(test.weights[mask])
         columns = slopes * sizes / test.scale
@@ -241,7 +262,15 @@ def covariances(
         scores += [columns[rows].T @ (shares[rows] * error[rows]) for rows in test.cycle_rows]
     inverse = np.linalg.pinv(curvature, hermitian=True, rcond=1e-12)
     middle = np.array(scores).T @ np.array(scores) * len(scores) / (len(scores) - 1)
-    return np.array([inverse @ each @ inverse * np.outer(sizes, sizes) for each in (middle, noise)])
+    relative = [inverse @ each @ inverse for each in (middle, noise)]
+    # Before the tests, a positive parameter is known within a factor e: larger relative errors are beyond the linear
+    # propagation, and would make the force as uncertain as a parameter without effect on it.
+    precision = np.diag([0.0 if name in LINEAR else 1.0 for name in law.parameters])
+    prior = [
+        each - each @ precision @ np.linalg.solve(precision @ each @ precision + np.eye(sizes.size), precision @ each)
+        for each in relative
+    ]
+    return np.array([0.5 * (each + each.T) * np.outer(sizes, sizes) for each in prior])
 
 
 def deviations(spreads: Vector, rows: Vector) -> Vector:

@@ -1,4 +1,6 @@
-"""Force of a damper law under a measured motion, with its derivatives: `vehicle.studies.dampers.damper_law`.
+"""Force of a damper law under measured motions, with its derivatives: `vehicle.studies.dampers.damper_law`.
+
+The motions of several tests are computed in one pass (`joined`); each begins with its measured force.
 
 Without a series stiffness the force is a function of velocity and displacement; the force of a Jenkins element follows
 from its displacement after the last slip. With a series stiffness K the deflection s is solved for at each sample,
@@ -9,13 +11,14 @@ from its displacement after the last slip. With a series stiffness K the deflect
 
 with the backward difference of second order for steps h, h_1 (r = h/h_1): a_0 = (1 + 2 r)/((1 + r) h),
 a_1 = -(1 + r)/h, a_2 = r^2/((1 + r) h). It is stable for any K. The right side falls with s, so the solution is unique.
-The derivatives of s over the parameters solve the linearised equations of all samples at once (a band matrix).
+The derivatives of s over the parameters solve the linearised equations of all samples at once (a triangular band).
 """
 
 from __future__ import annotations
 
 import ctypes
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -30,6 +33,8 @@ from vehicle.studies.dampers.damper_law import EXPONENT, SOFT_STEP, STEP, Damper
 from vehicle.studies.dampers.damper_setting import Setting
 
 Counts = npt.NDArray[np.intp]
+
+_CHANNELS = ("time", "displacement", "velocity")
 
 FASTEST_GROWTH = 2.0
 """Maximum ratio of two successive steps for the difference of second order, which is stable up to 2.4."""
@@ -47,10 +52,30 @@ class Motion:
     # velocities; (n - 1,), or 1 for all
     parts: Counts | int = 1
     setting: Setting | None = None  # condition that changes during the test
+    joined: tuple[Motion, ...] = ()  # motions of several tests, one after the other; see `joined`
+
+    @property
+    def tests(self) -> tuple[Motion, ...]:
+        """Return the motions of the tests."""
+        return self.joined or (self,)
+
+    @cached_property
+    def firsts(self) -> Counts:
+        """Return the number of the first sample of each test; (tests,)."""
+        return np.cumsum([0, *(test.time.size for test in self.tests[:-1])])
+
+    @cached_property
+    def starts(self) -> Counts:
+        """Return the number of the first sample of the test of each sample; (n,)."""
+        return np.repeat(self.firsts, [test.time.size for test in self.tests])
 
     @cached_property
     def refined(self) -> tuple[Motion, Counts]:
         """Return the motion with its parts as samples, and the numbers of the samples of this motion among them."""
+        if self.joined:
+            fine = joined([test.refined[0] for test in self.joined])
+            shifted = [first + test.refined[1] for first, test in zip(fine.firsts, self.joined, strict=True)]
+            return fine, np.concatenate(shifted)
         rows = np.concatenate([[0], np.cumsum(np.broadcast_to(self.parts, self.time.size - 1))])
         time = np.interp(np.arange(rows[-1] + 1), rows, self.time)
         cubic = scipy.interpolate.CubicHermiteSpline(self.time, self.displacement, self.velocity)
@@ -59,6 +84,8 @@ class Motion:
     @cached_property
     def rates(self) -> Vector:
         """Return a_0, a_1 and a_2 of the backward difference at each sample [1/s]; (3, n), zeros at the first."""
+        if self.joined:
+            return np.concatenate([test.rates for test in self.joined], axis=1)
         steps = np.diff(self.time, prepend=self.time[0] - 1.0)
         ratio = steps / np.concatenate([[np.inf, np.inf], steps[1:-1]])
         ratio[ratio > FASTEST_GROWTH] = 0.0
@@ -66,6 +93,12 @@ class Motion:
         weights = np.stack([(1.0 + 2.0 * ratio) / (1.0 + ratio), -(1.0 + ratio), ratio**2 / (1.0 + ratio)]) / steps
         weights[:, 0] = 0.0
         return np.asarray(weights)
+
+
+def joined(motions: Sequence[Motion]) -> Motion:
+    """Return the motions of several tests as one, for `force_and_slopes`."""
+    time, x, v = (np.concatenate([getattr(motion, name) for motion in motions]) for name in _CHANNELS)
+    return Motion(time, x, v, motions[0].first_force, joined=tuple(motions))
 
 
 def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tuple[Vector, Vector]:
@@ -97,9 +130,10 @@ def _engaged(values: DamperValues, deflection: Vector) -> Vector:
 
 def _mixed(law: DamperLaw, parameters: Vector, motion: Motion) -> tuple[Vector, Vector]:
     """Return force and derivatives of a soft and a firm law with a changing setting, see `damper_setting`."""
-    assert motion.setting is not None
     names, numbers = list(law.parameters), dict(zip(law.parameters, parameters.tolist(), strict=True))
-    theta, *slopes = motion.setting.shares(numbers["lag"], numbers.get("delay", 0.0), numbers.get("saturation", 1.0))
+    at = numbers["lag"], numbers.get("delay", 0.0), numbers.get("saturation", 1.0)
+    settings = [test.setting for test in motion.tests]
+    theta, *slopes = np.concatenate([setting.shares(*at) for setting in settings if setting is not None], axis=1)
     columns = np.zeros((theta.size, len(names)))
     forces = []
     for share, half in zip((1.0 - theta, theta), law.halves, strict=True):
@@ -151,20 +185,24 @@ def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, Mask]:
     sliding, at_rest, critical = values.friction
     deflection, inner = np.empty(samples), np.empty(samples)
     sticking = np.empty((samples, elements), dtype=np.uint8)
-    rig = packed(
-        "DamperRig",
-        {
-            "displacement": np.ascontiguousarray(motion.displacement),
-            "velocity": np.ascontiguousarray(motion.velocity), "rates": motion.rates,
-            "knots": knots, "slopes": slopes, "offsets": offsets,
-            "stiffness": values.stiffness, "limit": values.limit, "forces": np.zeros(elements),
-            "spring": values.series, "gas": values.gas_stiffness, "offset": values.offset, "drop": at_rest - sliding,
-            "critical": critical, "half": 0.5 * values.gap,
-            "first": motion.first_force - values.outer_friction * np.sign(motion.velocity[0]),
-            "deflection": deflection, "inner": inner, "sticking": sticking,
-        },
-    )  # fmt: skip
-    core().core_damper_rig(ctypes.c_void_p(rig.address))
+    first = 0
+    for test in motion.tests:
+        rows = slice(first, first + test.time.size)
+        first = rows.stop
+        rig = packed(
+            "DamperRig",
+            {
+                "displacement": np.ascontiguousarray(test.displacement),
+                "velocity": np.ascontiguousarray(test.velocity), "rates": test.rates,
+                "knots": knots, "slopes": slopes, "offsets": offsets,
+                "stiffness": values.stiffness, "limit": values.limit, "forces": np.zeros(elements),
+                "spring": values.series, "gas": values.gas_stiffness, "offset": values.offset,
+                "drop": at_rest - sliding, "critical": critical, "half": 0.5 * values.gap,
+                "first": test.first_force - values.outer_friction * np.sign(test.velocity[0]),
+                "deflection": deflection[rows], "inner": inner[rows], "sticking": sticking[rows],
+            },
+        )  # fmt: skip
+        core().core_damper_rig(ctypes.c_void_p(rig.address))
     return deflection, inner, np.ascontiguousarray(sticking.T != 0)
 
 
@@ -227,10 +265,10 @@ def _rigid(law: DamperLaw, values: DamperValues, motion: Motion) -> tuple[Vector
     force = _curve_force(values, v, SOFT_STEP) + values.gas_stiffness * x + values.offset
     columns = [-np.ones((x.size, 1)), curve]
     for k, limit in zip(values.stiffness, values.limit, strict=True):
-        path = _slider_force(x, float(k), float(limit))
+        path = np.concatenate([_slider_force(test.displacement, float(k), float(limit)) for test in motion.tests])
         slips = np.maximum.accumulate(np.where(np.abs(path) >= limit, np.arange(x.size), -1))
-        begun = slips >= 0
-        start = np.where(begun, x[np.maximum(slips, 0)], x[0])
+        begun = slips >= motion.starts
+        start = np.where(begun, x[np.maximum(slips, 0)], x[motion.starts])
         strained = np.where(begun, np.sign(path[np.maximum(slips, 0)]), 0.0) + (x - start) * k / limit
         columns.append(np.column_stack([strained, -(x - start) * k**2 / limit]))
         force = force + path
@@ -253,8 +291,9 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
 
     Unknown in the order s, t_1 ... t_m of each sample; row of s: (K + k_g) ds - dt_1 ... - c dw = explicit derivatives
     of the right side - s dK, with dw = -(a_0 ds + a_1 ds_1 + a_2 ds_2); rows of t_i: dt_i + k_i ds - dt_i1 - k_i ds_1 =
-    du dk_i where it sticks, dt_i = +-dl_i where it slips; k_i is the limit l_i over the stroke. With a gap g, s in K s
-    is the deflection e beyond it: de = ds -+ dg/2, and zero in the gap.
+    du dk_i where it sticks, dt_i = +-dl_i where it slips; k_i is the limit l_i over the stroke. The rows of
+    a sample are summed in its first row, which gives a triangular band: a sample follows from earlier samples. With a
+    gap g, s in K s is the deflection e beyond it: de = ds -+ dg/2, and zero in the gap.
     """
     n, m = s.size, len(values.stiffness)
     rates, near, far = motion.rates
@@ -262,49 +301,53 @@ def _slopes(law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: 
     u = motion.displacement - s
     du = np.diff(u, prepend=u[0])
     slope, curve = _curve_columns(law, values, w, STEP)
+    sticking = sticking.copy()
+    sticking[:, motion.firsts] = False  # t is zero there
     size = m + 1
-    right = np.zeros((n, size, len(names)))
-    right[:, 0, 0] = -1.0
-    right[:, 0, 1 : 1 + curve.shape[1]] = curve
+    # Both arrays are transposed: LAPACK stores columns in sequence.
+    right = np.zeros((len(names), n, size))
+    right[0, :, 0] = -1.0
+    right[1 : 1 + curve.shape[1], :, 0] = curve.T
     engaged = _engaged(values, s)
     spring = np.where((engaged == 0.0) & law.gap, 0.0, values.series)
     gap = 0.5 * spring * np.sign(s)
-    right[:, 0, names.index("series_stiffness")] = -engaged
+    right[names.index("series_stiffness"), :, 0] = -engaged
     if law.gap:
-        right[:, 0, names.index("gap")] = gap
+        right[names.index("gap"), :, 0] = gap
     if law.gas_stiffness:
-        right[:, 0, names.index("gas_stiffness")] = u
-    lower, upper = 2 * size, m
-    band = np.zeros((lower + upper + 1, n, size))
+        right[names.index("gas_stiffness"), :, 0] = u
+    band = np.zeros((n, size, 2 * size + 1))
 
     def entry(row: int, column: int, lag: int, value: npt.ArrayLike) -> None:
         """Set the entries of all samples in a row of the equations, for an unknown `lag` samples earlier."""
-        at = row - column + lag * size
-        band[upper + at, : n - lag, column] = np.broadcast_to(value, n)[lag:]
+        band[: n - lag, column, row - column + lag * size] = np.broadcast_to(value, n)[lag:]
 
-    entry(0, 0, 0, spring + values.gas_stiffness + slope * rates)
-    entry(0, 0, 1, slope * near)
+    held = sticking * values.stiffness[:, None]
+    total = np.sum(held, axis=0)
+    entry(0, 0, 0, spring + values.gas_stiffness + slope * rates + total)
+    entry(0, 0, 1, slope * near - total)
     entry(0, 0, 2, slope * far)
-    for i, (k, stuck) in enumerate(zip(values.stiffness, sticking, strict=True)):
-        entry(0, i + 1, 0, -1.0)
-        entry(i + 1, i + 1, 0, 1.0)
-        entry(i + 1, 0, 0, np.where(stuck, k, 0.0))
-        entry(i + 1, i + 1, 1, np.where(stuck, -1.0, 0.0))
-        entry(i + 1, 0, 1, np.where(stuck, -k, 0.0))
+    for i, stuck in enumerate(sticking):
         at, limit = names.index(f"slider_limit_{i + 1}"), values.limit[i]
-        right[:, i + 1, at] = np.where(stuck, du * k / limit, np.sign(du))
-        right[:, i + 1, at + 1] = np.where(stuck, -du * k**2 / limit, 0.0)
+        right[at, :, i + 1] = np.where(stuck, du * held[i] / limit, np.sign(du))
+        right[at + 1, :, i + 1] = -du * held[i] ** 2 / limit
+        right[:, :, 0] += right[:, :, i + 1]
+        entry(i + 1, i + 1, 0, 1.0)
+        entry(i + 1, 0, 0, held[i])
+        entry(i + 1, 0, 1, -held[i])
+        entry(i + 1, i + 1, 1, -1.0 * stuck)
+        entry(0, i + 1, 1, -1.0 * stuck)
     # First sample: s is the measured force over K, t is zero.
-    band[upper - np.arange(1, size), 0, np.arange(1, size)] = 0.0
-    band[upper, 0, 0] = values.series
-    band[upper + np.arange(1, size), 0, 0] = 0.0
-    right[0] = 0.0
-    right[0, 0, names.index("series_stiffness")] = -engaged[0]
+    first = motion.firsts
+    band[first, 0, 0] = values.series
+    right[:, first] = 0.0
+    right[names.index("series_stiffness"), first, 0] = -engaged[first]
     if law.gap:
-        right[0, 0, names.index("gap")] = 0.5 * values.series * np.sign(s[0])
-    solution = scipy.linalg.solve_banded((lower, upper), band.reshape(lower + upper + 1, -1),
-                                         right.reshape(n * size, -1), check_finite=False)  # fmt: skip
-    columns = spring[:, None] * solution.reshape(n, size, -1)[:, 0]
+        right[names.index("gap"), first, 0] = 0.5 * values.series * np.sign(s[first])
+    solution, _ = scipy.linalg.lapack.dtbtrs(
+        band.reshape(n * size, -1).T, right.reshape(len(names), -1).T, uplo="L", overwrite_b=True
+    )
+    columns = spring[:, None] * solution[::size]
     columns[:, names.index("series_stiffness")] += engaged
     if law.gap:
         columns[:, names.index("gap")] -= gap

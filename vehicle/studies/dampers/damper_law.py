@@ -11,8 +11,8 @@ With a gap g in series and a Coulomb friction F_o parallel to all,
 
 F_c has straight segments: slope c_j up to the velocity v_j, alike or separate on both sides. The friction is Coulomb
 friction, a step of F_c within `STEP`; Stribeck friction; or presliding, Jenkins elements over x - s. F_0 is minus the
-gas force, k_g the stiffness of the gas. All but the gap are laws of the vehicle file
-(`vehicle.studies.dampers.damper_text`).
+gas force, k_g the stiffness of the gas. All but F_o are laws of the vehicle file
+(`vehicle.studies.dampers.damper_text`); K and the gap belong to the mount of the rod.
 """
 
 from __future__ import annotations

@@ -18,13 +18,13 @@ from vehicle.studies.dampers.damper_text import (
     caption_of,
     choice_sentence,
     expected_rows,
-    next_test,
     notice_lines,
     range_rows,
     setting_rows,
     vehicle_lines,
 )
 from vehicle.studies.dampers.fitted_damper import FittedDamper
+from vehicle.studies.dampers.next_tests import HEADS, NextTest, Use, next_sentence, result_sentences
 from vehicle.studies.dampers.over_condition import control_lines, curve_lines, settings_of
 
 fill = templates(__file__)
@@ -33,14 +33,30 @@ PAGE_POINTS = 600
 """Maximum number of points of a line in the page, a cycle of a sine and more."""
 
 
-def damper_page(fits: Sequence[FittedDamper], command: str, *, author: str = "", project: str = "") -> str:
-    """Return the report of fitted dampers as one HTML document."""
+def damper_page(
+    fits: Sequence[FittedDamper],
+    command: str,
+    further: Sequence[NextTest] = (),
+    use: Use | None = None,
+    *,
+    author: str = "",
+    project: str = "",
+) -> str:
+    """Return the report of fitted dampers as one HTML document.
+
+    Args:
+        further, use: further tests, and the velocities at which the force matters; see `next_tests`.
+    """
     parts = []
     if len(fits) > 1:
         parts.append(("Over the conditions", "conditions", _conditions(fits)))
     for number_of_fit, fitted in enumerate(fits):
         condition = fitted.condition_words
         parts.append((f"Law{f' at {condition}' if condition else ''}", f"law{number_of_fit}", _law(fitted)))
+    if further:
+        heads, rows = HEADS[: len(further[0].cells)], [test.cells for test in further]
+        texts = [next_sentence(further, use), *result_sentences(further, use)]
+        parts.append(("Next test", "next", fill("next_test", texts=texts, heads=heads, rows=rows)))
     parts.append(("How to repeat the fit", "repeat", fill("repeat_damper", command=command)))
     tests = dict.fromkeys(test for fitted in fits for test in fitted.tests)
     return document(f"Damper from {len(tests)} test{'s'[: len(tests) > 1]}", (head_line(author, project),), parts)
@@ -111,7 +127,6 @@ def _law(fitted: FittedDamper) -> Markup:
         expected=expected,
         band=drawing(band, "Force over velocity with its band"),
         left_open=fitted.left_open(),
-        next_test=next_test(fitted),
         noted=notice_lines(fitted),
         lines=vehicle_lines(fitted),
     )

@@ -1,7 +1,7 @@
 """Fitted dampers as text: lines of a vehicle file, table of the tests, printed summary."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -103,26 +103,6 @@ def expected_rows(fitted: FittedDamper) -> list[tuple[str, Expected]]:
     return [(text, expected_error(fitted.fit, fitted.speeds, speed)) for speed, text in texts.items()]
 
 
-def next_test(fitted: FittedDamper) -> str:
-    """Return the further test with the largest error: to expect by velocity, left out by amplitude.
-
-    Empty if none is larger than the error to expect in the range of the tests.
-    """
-    below, inside, above = (expected.usual for _, expected in expected_rows(fitted))
-    slowest, fastest = (number(1e3 * speed, 2) for speed in (fitted.speeds[0] / RATIO, RATIO * fitted.speeds[1]))
-    smallest, largest = (number(1e3 * amplitude, 2) for amplitude in fitted.tested["amplitude"])
-    errors = {
-        f"up to {slowest} mm/s": below,
-        f"up to {fastest} mm/s": above,
-        f"with an amplitude below {smallest} mm": _range_error(fitted.fit, "smaller")[0],
-        f"with an amplitude above {largest} mm": _range_error(fitted.fit, "larger")[0],
-    }
-    text, error = max(errors.items(), key=lambda each: -1.0 if math.isnan(each[1]) else each[1])
-    if not error > inside:
-        return ""
-    return f"a test {text} would help most: its error may be {number(error, 2)}, against {number(inside, 2)} inside"
-
-
 def choice_sentence(fitted: FittedDamper) -> str:
     """Return the rule of the choice in words, with its tolerance."""
     tolerance = number(100.0 * math.expm1(fitted.fit.tolerance), 2)
@@ -174,19 +154,35 @@ def vehicle_lines(fitted: FittedDamper) -> str:
                      "which the errors of this fit do not contain")  # fmt: skip
     # Without a fit (`finished`) there are no covariances and no band.
     lines += range_lines(fitted.tested | (stored_band(fitted) if fit.spreads.size else {}))
-    if law.gap:
-        lines.append(
-            f"# gap {1e3 * values.gap:.4g} mm, standard error {number(1e3 * spread['gap'], 2)} mm, in series with "
-            f"these lines, and {values.outer_friction:.4g} N of friction beside it: the vehicle file has no such "
-            "element, and the errors of the tests do not hold for these lines"
-        )
-    if law.series:
-        lines += [
-            f"# series stiffness {values.series:.4g} N/m, standard error {number(spread['series_stiffness'], 2)} N/m:",
-            "# eye, oil and machine together. It belongs to the mount of the rod, 1/K = 1/K_mount + 1/K_series:",
-            f"# [AXLE.bushings.MOUNT] stiffness.z = {_short(values.series)} where the eye of the test is the mount",
-        ]
+    lines += _mount_lines(fitted, spread)
     return "\n".join(lines + [f"# not determined: {text}" for text in fitted.left_open()]) + "\n"
+
+
+def _mount_lines(fitted: FittedDamper, spread: Mapping[str, float]) -> list[str]:
+    """Return series stiffness and gap as comments: lines for the mount of the rod, which both engines run."""
+    law, values = fitted.fit.law, values_of(fitted.fit.law, fitted.fit.parameters)
+    if not law.series:
+        return []
+    lines = [
+        f"# series stiffness {values.series:.4g} N/m, standard error {number(spread['series_stiffness'], 2)} N/m:",
+        "# eye, oil and machine together. It belongs to the mount of the rod, 1/K = 1/K_mount + 1/K_series:",
+    ]
+    if not law.gap:
+        where = "where the eye of the test is the mount"
+        return [*lines, f"# [AXLE.bushings.MOUNT] stiffness.z = {_short(values.series)} {where}"]
+    # The outer segments of a table go on with their slope, K.
+    largest = max(float(np.max(np.abs(test.force))) for test in fitted.tests)
+    ends = [0.5 * values.gap, 0.5 * values.gap + largest / values.series]
+    displacement = ", ".join(_short(each) for each in (-ends[1], -ends[0], ends[0], ends[1]))
+    return [
+        *lines,
+        f"# gap {1e3 * values.gap:.4g} mm, standard error {number(1e3 * spread['gap'], 2)} mm, in series with both, in "
+        "place of stiffness.z where the eye of the test is the mount of the damper alone:",
+        f"# [AXLE.bushings.MOUNT] table_z = {{ displacement = [{displacement}], force = "
+        f"[{_short(-largest)}, 0.0, 0.0, {_short(largest)}] }}",
+        f"# {values.outer_friction:.4g} N of friction beside the gap has no element in the vehicle file: without it, "
+        "and without this mount, the errors of the tests do not hold in the car",
+    ]
 
 
 def _curve_lines(fitted: FittedDamper, spread: dict[str, float]) -> list[str]:
@@ -237,6 +233,12 @@ def _line(name: str, value: float, unit: str, error: float) -> str:
     return f"{name} = {_short(float(value))}  # [{unit}] standard error {number(error, 2)}"
 
 
+def set_lines(text: str, section: str) -> list[str]:
+    """Return the lines of a section of a vehicle file as `section.key=value`, for `--set` after the name of an axle."""
+    lines = (line.partition("#")[0].strip() for line in text.splitlines())
+    return [f"{section}.{line.replace(' = ', '=', 1)}" for line in lines if line]
+
+
 def fit_json(fitted: FittedDamper) -> dict[str, Any]:
     """Return the fit for `--json`: law, parameters, lines for `--set`, and the errors of the tests.
 
@@ -244,7 +246,6 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
     `left_out` the same of the law fitted to the other tests; None for a single test.
     """
     fit = fitted.fit
-    lines = (line.partition("#")[0].strip() for line in vehicle_lines(fitted).splitlines())
     errors = zip(fitted.tests, fit.fitted.tolist(), fit.left_out.tolist(), fit.whole.tolist(), strict=True)
     return {
         "conditions": dict(fitted.conditions),
@@ -260,7 +261,7 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
                 fit.law.parameters.items(), fit.values.tolist(), fit.errors.tolist(), strict=True
             )
         ],
-        "set": [f"damper.{line.replace(' = ', '=', 1)}" for line in lines if line],
+        "set": set_lines(vehicle_lines(fitted), "damper"),
         "tests": [
             {
                 "file": test.name,
@@ -286,7 +287,6 @@ def fit_json(fitted: FittedDamper) -> dict[str, Any]:
             {"velocity": text, "usual": usual, "nine_of_ten_below": _or_none(limit)}
             for text, (usual, limit) in expected_rows(fitted)
         ],
-        "next_test": next_test(fitted),
         "missing": missing_text(fitted),
         "setting": [
             {"name": name, "value": value, "standard_error": _or_none(error), "unit": unit}
@@ -353,8 +353,6 @@ def summary_lines(fitted: FittedDamper, again: bool = False) -> list[str]:
         lines += [f"{text:<52}{inside:>8.3f}{outside:>10.3f}" for text, outside, inside in rows]
     lines.append(f"{'error to expect in a further test with up to':<52}{'usual':>8}{'nine of ten below':>20}")
     lines += [f"{text:<52}{usual:>8.3f}{_or_dash(limit, 3):>20}" for text, (usual, limit) in expected_rows(fitted)]
-    if further := next_test(fitted):
-        lines.append(f"next: {further}")
     if missing := missing_text(fitted):
         lines.append(f"missing: {missing}")
     if float(np.max(fit.fitted)) > POOR:

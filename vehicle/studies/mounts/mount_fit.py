@@ -12,8 +12,6 @@ the least
 is chosen (Bayesian information criterion, Schwarz, Annals of Statistics 6 (1978)).
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass

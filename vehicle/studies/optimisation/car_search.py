@@ -1,7 +1,5 @@
 """Search for optimal parameters of a car: check all arguments first, then run in a folder."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle.arrays import Vector
+from vehicle.digits import number_in
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import Range
 
@@ -155,7 +156,7 @@ def parsed_criteria(
         raise ConfigurationError("no objective; add --minimise unweighted, or another figure")
     for text in limits:
         parts = re.fullmatch(r"(.+?)\s*(<=|>=)\s*(.+)", text)
-        bound = _number(parts[3]) if parts else math.nan
+        bound = number_in(parts[3]) if parts else math.nan
         if parts is None or not math.isfinite(bound):
             raise ConfigurationError(f"--limit {text}: must be NUMBER<=VALUE or NUMBER>=VALUE, e.g. travel<=0.06")
         criteria.append(_criterion("--limit", parts[1], 1.0 if parts[2] == "<=" else -1.0, bound, inputs))
@@ -183,7 +184,7 @@ def _criterion(option: str, text: str, sense: float, limit: float, inputs: Seque
 def parsed_tolerance(text: str) -> Tolerance:
     """Parse a tolerance from the text of an option."""
     path, _, size = (part.strip() for part in text.partition("="))
-    width = _number(size.removesuffix("%"))
+    width = number_in(size.removesuffix("%"))
     if not path or not (math.isfinite(width) and width > 0.0):
         raise ConfigurationError(
             f"--tolerance {text}: must be PATH=NUMBER in the unit of the parameter, or PATH=NUMBER%, above 0: half the "
@@ -191,10 +192,3 @@ def parsed_tolerance(text: str) -> Tolerance:
         )
     relative = size.endswith("%")
     return Tolerance(path=path, width=width / 100.0 if relative else width, relative=relative)
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan

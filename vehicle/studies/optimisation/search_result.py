@@ -1,7 +1,5 @@
 """Result of a search for optimal parameters of a car: named cars, checks of these cars, and all files."""
 
-from __future__ import annotations
-
 import math
 import shlex
 from collections.abc import Mapping

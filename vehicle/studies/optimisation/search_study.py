@@ -1,9 +1,7 @@
 """Studies of a search, run into a folder: a Pareto front, or the smallest change to reach targets."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.model.parameters.car_choice import CarChoice
@@ -35,13 +33,13 @@ ROWS = (CARS, SEARCH)
 class SearchStudy:
     """Study of a search for a Pareto front, see `optimise`."""
 
-    car: CarChoice = CarChoice()  # the car
+    car: CarChoice = part(CarChoice)  # the car
     vary: Mapping[str, Sequence[float]] | Sequence[Range]  # path to bounds, or ranges
     inputs: Inputs  # files, names of shipped files, roads or signals
     minimise: Sequence[str]  # objectives
     settings: SearchSettings = part(SearchSettings)  # settings of the search
     beside: Path | None = None  # folder of another search with these objectives, drawn with its distance
-    destination: Destination = field(default_factory=Destination)  # folder of the results
+    destination: Destination = part(Destination)  # folder of the results
 
     def run(self, *, command: str = "", begin: Begin = unseen, note: Callable[[str], object] = unseen) -> str:
         """Run the search, write its files and return the printed table of its named cars.
@@ -72,13 +70,13 @@ class SearchStudy:
 class TargetStudy:
     """Study of the smallest change with which a car reaches targets, see `meet_targets`."""
 
-    car: CarChoice = CarChoice()  # the car
+    car: CarChoice = part(CarChoice)  # the car
     vary: Sequence[Range]  # ranges of at most 8 parameters
     targets: Path  # file of figures with limits and inputs
     cost: Sequence[tuple[str, float]] = ()  # path and cost of the change of a parameter; 1 by default
     duration: float | None = None  # length of a road class [s]; by default the length of a run
     jobs: int = 1  # number of processes
-    destination: Destination = field(default_factory=Destination)  # folder of the results
+    destination: Destination = part(Destination)  # folder of the results
 
     def run(self, *, command: str = "", begin: Begin = unseen, note: Callable[[str], object] = unseen) -> str:
         """Run the search, write its files and return the printed result; arguments as in `SearchStudy.run`.

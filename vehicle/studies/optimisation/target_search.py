@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.arrays import Vector
-from vehicle.digits import aligned, number
+from vehicle.digits import aligned, finite, number
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of as parameter_value
 from vehicle.model.parameters.ranges import LENGTH_OF_ONE, Range, is_coordinate
@@ -137,7 +137,7 @@ class TargetSearch:
                 for each, value in zip(self.ranges, self.values, strict=True)
             },
             "figures": {
-                name: {"limit": figure.limit, "unit": figure.unit, **dict(zip(keys, map(_finite, values), strict=True))}
+                name: {"limit": figure.limit, "unit": figure.unit, **dict(zip(keys, map(finite, values), strict=True))}
                 for (name, figure), *values in zip(
                     self.figures.items(), *(getattr(self, key) for key in keys), strict=True
                 )
@@ -268,7 +268,3 @@ def _with_start(vehicle: Vehicle, bounds: Range) -> Range:
     slack = 1e-12 * (LENGTH_OF_ONE if linear else start)
     low, high = min(bounds.low, start - slack), max(bounds.high, start + slack)
     return replace(bounds, low=low, high=high, start=start, length=LENGTH_OF_ONE if linear else math.nan)
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -1,7 +1,5 @@
 """Files of a replicated drive: plate signals, target and response, iterations, pictures, parameters, summary."""
 
-from __future__ import annotations
-
 from functools import partial
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Plate signals that make a car respond with measured accelerations (time waveform replication)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Designs of a sweep whose cars the user names: values in every combination, the rows of a table."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Evaluation of a sweep over chosen cars: the cars in the order of comfort, their picture and their report."""
 
-from __future__ import annotations
-
 import math
 import shlex
 from collections.abc import Sequence

@@ -16,8 +16,6 @@ Sources: Saltelli et al., Comput. Phys. Commun. 181 (2010); L'Ecuyer, Randomized
 replicates; Efron and Tibshirani, An Introduction to the Bootstrap (1993), chapter 11.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

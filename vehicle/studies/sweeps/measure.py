@@ -1,7 +1,5 @@
 """Measures: a few values of each run of a sweep."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -4,8 +4,6 @@ All cars drive on the same road, so a change has a far smaller error than the co
 (`vehicle.studies.sweeps.change_error`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar

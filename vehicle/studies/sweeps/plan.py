@@ -1,7 +1,5 @@
 """Sweep of a car: check of parameters, inputs and measure before the first run."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 import time as clock

@@ -1,7 +1,5 @@
 """Sobol indices of the comfort of a car: a sweep at the points of the sample, and the indices with their intervals."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -38,11 +38,11 @@ class SweepStudy:
     """Study of a sweep, as the command runs it."""
 
     design: Design  # varied parameters, and evaluation of their table
-    car: CarChoice = CarChoice()  # the car
+    car: CarChoice = part(CarChoice)  # the car
     inputs: Inputs = ()  # files, names of shipped files, roads or signals; a `CaseFile` has its own
     runs: SweepSettings = part(SweepSettings)  # settings of the runs
-    destination: Destination = field(default_factory=Destination)  # folder of the results
-    report: ReportChoice = field(default_factory=ReportChoice)  # report of the evaluation
+    destination: Destination = part(Destination)  # folder of the results
+    report: ReportChoice = part(ReportChoice)  # report of the evaluation
     allow_failed: bool = False  # accept a table with failed runs as success
 
     def run(

@@ -1,7 +1,5 @@
 """Table of a sweep: a row for each case, in the order of the cases."""
 
-from __future__ import annotations
-
 import html
 import io
 import json

@@ -1,7 +1,5 @@
 """Fit of parameters of a car to measured FRFs and time histories."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """Result of a fit: values, standard errors, correlation, and residual statistics row by row."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property

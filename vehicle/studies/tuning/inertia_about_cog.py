@@ -5,8 +5,6 @@ centre of gravity c, leaves the real bodies, whose I_C has positive second momen
 A fit of I_C is therefore made first; a fit of I_O, with the bounds of the user, begins where it ends.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Targets of a fit from measurement files: FRFs and time histories, with their plate signals."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

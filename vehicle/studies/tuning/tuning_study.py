@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,13 +34,13 @@ Begin = Callable[[str], Callable[[float], None]]
 class TuningStudy:
     """Study of a fit, as the command runs it."""
 
-    car: CarChoice  # the car before the fit
+    car: CarChoice = part(CarChoice)  # the car before the fit
     parameters: Mapping[str, Bounds]  # path to lower and upper bound, and optionally start value, see `vehicle.tune`
     measurements: MeasurementSettings  # measurement files and their settings
     engine: str = "mujoco"  # engine of the last steps
     posterior: bool = False  # also compute the distribution of the parameters
     uncertainty: PosteriorSettings = part(PosteriorSettings)  # settings of this distribution
-    destination: Destination = field(default_factory=Destination)  # folder of the results
+    destination: Destination = part(Destination)  # folder of the results
     author: str = ""  # author, project: names in the head of the report
     project: str = ""
 

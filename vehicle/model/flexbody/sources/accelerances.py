@@ -1,7 +1,5 @@
 """Accelerances of a body from a file: acceleration at points per force at points, with places and directions."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

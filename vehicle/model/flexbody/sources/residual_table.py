@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.arrays import Vector
+from vehicle.digits import number_in
 from vehicle.errors import DataError
 from vehicle.names import AXES
 
@@ -66,17 +67,10 @@ def read_point_table(path: Path, units: Collection[str], example: str) -> tuple[
         )
     table: dict[str, list[float]] = {}
     for row in rows[1:]:
-        point, values = row[0].strip(), [_number(word) for word in row[1:]]
+        point, values = row[0].strip(), [number_in(word) for word in row[1:]]
         if point in table:
             raise DataError(f"{path}: {point!r} occurs twice.")
         if len(values) != len(AXES):
             raise DataError(f"{path}: {point}: found {','.join(row[1:])}, must be three numbers.")
         table[point] = values
     return table, column_units
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan

@@ -13,8 +13,6 @@ Sources: Okuzumi, JSAE Review 12 (1991) 80; Toivola and Nuutila, IMAC 1993 (rigi
 Urgueira and Maia, J. Sound Vib. 299 (2007) 884, a comparison of such methods.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ See `rigid_fit` for the equation. The terms s w^2 + t w^4 of each accelerance ar
 orthogonal complement (variable projection; Golub and Pereyra, 1973), so 31 unknowns are left.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ The mode indicator I = sum |Re H| |H| / sum |H|^2 over all accelerances is 1 whe
 body are, and has a minimum at each resonance (Williams, Crowley and Vold, IMAC 1985).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
