@@ -1,20 +1,19 @@
 """Does the probability of a diagnosis hold? Drives with known dampers, of cars inside and outside the prior.
 
-    python -m tests.benchmarks.diagnosis_calibration [inside N] [outside N] [mujoco N] [healthy N] [wrong N]
+    python -m tests.benchmarks.diagnosis_calibration [inside N] [outside N] [mujoco N] [healthy N]
 
-Without arguments all of them run. One training of drives with a phone at the seat rail, and with eight sensors at
-wheels and strut tops, serves all: the sedan at 79 km/h for 39 s.
+Without arguments all of them run. One training of drives with a phone at the seat rail, and one with eight sensors
+at wheels and strut tops, serve all: the sedan at 79 km/h for 39 s.
 
 inside: cars of the prior, few on each road: ranks of the true factors, 90 % intervals, AUC for "below 0.6", road class.
 outside: springs, stabilizers and mounts +-30 % of each side apart, and other laws than those of the training.
 mujoco: records of the MuJoCo engine, other roads (constant amplitudes of the lines), empty and laden.
 healthy: how many of 4 N healthy dampers are called worn, at the threshold that finds 80 % of dampers at half force.
-wrong: what another car, speed, unit, axis, engine or road gives: refused, widened, or a wrong statement.
+Wrong inputs are in `tests.benchmarks.diagnosis_wrong_inputs`.
 """
 
 import sys
 import time
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -34,17 +33,16 @@ WHEELS = ("fr", "fl", "rr", "rl")
 PHONE = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")
 EIGHT = tuple(f"{point}_{wheel}_acc_z" for point in ("knuckle", "damper_top") for wheel in WHEELS)
 SPEED, SECONDS = 22.0, 39.0
-SEED = 20260063
+SEED = 20260163
 """Seed of the drives with known dampers; the training has another."""
 
 
 def both(car, speed=SPEED, count=None):
-    """Diagnostics of a car with the phone and with the eight sensors, from the same drives."""
-    phone = Diagnostics.of(car, PHONE, (speed, speed), SECONDS, highest=40.0, count=count)
-    assert phone.at_wheels is not None
-    swapped = replace(phone.drives, features=phone.drives.features[::-1])
-    eight = replace(phone, channels=EIGHT, drives=swapped, learned=phone.at_wheels)
-    return {"phone": phone, "eight": eight}
+    """Diagnostics of a car with the phone and with the eight sensors."""
+    return {
+        name: Diagnostics.of(car, channels, (speed, speed), SECONDS, highest=40.0, count=count)
+        for name, channels in {"phone": PHONE, "eight": EIGHT}.items()
+    }
 
 
 def record_of(samples, channels, rate=RATE):
@@ -213,7 +211,8 @@ def outside(diagnostics, car, count):
 
 
 def by_mujoco(diagnostics, car, count):
-    rng = np.random.default_rng(SEED + 2)
+    # These 45 drives are those that were seen while the prior was chosen; all other seeds are fresh.
+    rng = np.random.default_rng(20260065)
     scores = {name: Score(f"MuJoCo, {name}") for name in diagnostics}
     for number in range(count):
         made, truth = other_car(car, rng)
@@ -254,76 +253,9 @@ def healthy(diagnostics, car, count):
         )
 
 
-def wrong(diagnostics, car, count):
-    """A table of wrong inputs, `count` records each."""
-    prior, rng = CarPrior(car, SPEED), np.random.default_rng(SEED + 4)
-    channels = (*PHONE, *EIGHT)
-    time = np.arange(round(SECONDS * RATE) + 1) / RATE
-    engine = sum(np.sin(2.0 * np.pi * f * time) for f in (13.0, 26.0, 39.0))
-
-    def of_car(other, **changes):
-        rolling = other.with_({"driving.speed": SPEED})
-        where = replace(drawn_road(other, SPEED, rng), **changes)
-        return drive([as_drawn(rolling)], where, rolling, channels, SECONDS, rng)[0], [1.0] * 4
-
-    def of_prior(**changes):
-        drawn_car = prior.with_dampers(prior.draw(rng), rng)
-        where = replace(drawn_road(car, SPEED, rng), **changes)
-        samples = drive([drawn_car], where, prior.car, channels, SECONDS, rng)[0]
-        return samples, [drawn_car.values[f"damper {wheel}"] for wheel in WHEELS]
-
-    def changed(change):
-        samples, truth = of_prior()
-        return change(samples.copy()), truth
-
-    def exchanged(samples):
-        # Axes x and z of the phone; front and rear wheels.
-        return samples[[2, 1, 0, 5, 6, 3, 4, 9, 10, 7, 8]]
-
-    def upside_down(samples):
-        samples[[2, 3, 4, 5, 6]] *= -1.0
-        return samples
-
-    van = {"body.mass": 1.5 * car["body.mass"].value} | {
-        f"{axle}.main_spring.stiffness": 1.7 * car[f"{axle}.main_spring.stiffness"].value for axle in ("front", "rear")
-    }
-    kinds = {
-        "the right input": of_prior,
-        "focus_road for the sedan": lambda: of_car(Car.load("focus_road")),
-        "a van for the sedan": lambda: of_car(car.with_(van)),
-        "100 km/h given as 79": lambda: of_prior(speed=100.0 / 3.6),
-        "60 km/h given as 79": lambda: of_prior(speed=60.0 / 3.6),
-        "gravity in z": lambda: changed(lambda samples: samples + 9.81),
-        "g taken for m/s2": lambda: changed(lambda samples: samples / 9.81),
-        "x and z, front and rear exchanged": lambda: changed(exchanged),
-        "z upside down": lambda: changed(upside_down),
-        "engine idles": lambda: changed(lambda samples: 0.01 * samples + 0.3 * engine),
-        "engine orders in the drive": lambda: changed(lambda samples: samples + 0.3 * engine),
-        "class E": lambda: of_prior(level=CLASSES["E"]),
-        "class F": lambda: of_prior(level=CLASSES["F"]),
-    }
-    print("wrong inputs: refused, widened, statements, of these wrong (phone; eight)")
-    for title, make in kinds.items():
-        counts = {name: np.zeros(4, dtype=int) for name in diagnostics}
-        for _ in range(count):
-            samples, truth = make()
-            for name, found in judged(diagnostics, samples).items():
-                counts[name] += _outcome(found, truth)
-        print(f"  {title}: n {count}; " + "; ".join(" ".join(map(str, each)) for each in counts.values()), flush=True)
-
-
-def _outcome(found, truth):
-    """Refused, widened by a fifth, and statements on single dampers, of these wrong."""
-    if found is None:
-        return np.array([1, 0, 0, 0])
-    said = [(found.worn(wheel), true < WORN) for wheel, true in zip(WHEELS, truth, strict=True)]
-    sure = [(p >= SURE) != below for p, below in said if p >= SURE or p <= 1.0 - SURE]
-    return np.array([0, found.widened > 1.2, len(sure), sum(sure)])
-
-
 def main(words):
     """Run the parts that are named, with their numbers of cars."""
-    numbers = {"inside": 400, "outside": 200, "mujoco": 24, "healthy": 100, "wrong": 3}
+    numbers = {"inside": 400, "outside": 200, "mujoco": 45, "healthy": 100}
     if words:
         numbers = {name: int(count) for name, count in zip(words[::2], words[1::2], strict=True)}
     started = time.process_time()
@@ -333,7 +265,7 @@ def main(words):
           f"{time.process_time() - started:.1f} s of processor time", flush=True)  # fmt: skip
     if "inside" in numbers:
         inside(diagnostics, CarPrior(car, SPEED), numbers["inside"])
-    for name, part in {"outside": outside, "mujoco": by_mujoco, "healthy": healthy, "wrong": wrong}.items():
+    for name, part in {"outside": outside, "mujoco": by_mujoco, "healthy": healthy}.items():
         if name in numbers:
             part(diagnostics, car, numbers[name])
 

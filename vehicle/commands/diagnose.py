@@ -73,7 +73,7 @@ class DiagnoseSettings(Settings):
         metavar="NAME,...",
     )
     drives: int | None = setting(
-        "number of simulated drives; default: 960, and 1440 for a range of speeds. More narrow the intervals",
+        "number of simulated drives; default: 1200, and 1440 for a range of speeds. More narrow the intervals",
         type=int,
         within="[160, 20000]",
         metavar="N",

@@ -156,9 +156,10 @@ def test_another_rate_or_irregular_times_give_the_same_statement(diagnostics, di
         (lambda samples: samples[[4, 5, 6, 7, 0, 1, 2, 3]], "cannot be a drive of sedan"),
         (lambda samples: samples * np.where(np.arange(8) < 4, -1.0, 1.0)[:, None], "cannot be a drive of sedan"),
         (lambda samples: 30.0 * samples, "times rougher than in any simulated drive"),
+        (lambda samples: samples / 9.81, r"check the units \(--unit\)"),
         (lambda samples: samples / 100.0, "times smoother than in any simulated drive"),
     ],
-    ids=["wheels and tops exchanged", "wheels upside down", "mm/s2 too large", "unit too small"],
+    ids=["wheels and tops exchanged", "wheels upside down", "mm/s2 too large", "g taken for m/s2", "unit too small"],
 )
 def test_wrong_inputs_are_refused(diagnostics, record, change, reason):
     other = replace(record, samples=change(record.samples))

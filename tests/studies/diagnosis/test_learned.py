@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle.studies.diagnosis.learned import Learned
+from vehicle.studies.diagnosis.record_gain import GainTest
 
 TOGETHER = 4
 
@@ -57,3 +58,17 @@ def test_drives_left_out_err_as_new_ones_do(learned):
     left_out = learned.left_out[:, 0] * learned.prior[0]
     # Both standard deviations scatter by 4 %.
     assert np.std(new) == pytest.approx(np.std(left_out), rel=0.15)
+
+
+def test_the_gain_shows_in_what_does_not_grow_with_the_road():
+    """Densities r s_i + n_i of a road r and of a friction n_i, which no unit changes together."""
+    rng = np.random.default_rng(7)
+    road, friction = np.exp(rng.uniform(0.0, 5.0, (400, 1))), np.exp(rng.uniform(-0.3, 0.3, (400, 1)))
+    densities = np.log(road * np.linspace(0.1, 1.0, 12) + 10.0 * friction)
+    densities += 0.05 * rng.standard_normal(densities.shape)
+    test = GainTest(densities[:300], 12, TOGETHER)
+    right = [test.gain(x) for x in densities[300:]]
+    wrong = [test.gain(x + 2.0 * np.log(9.81)) for x in densities[300:]]
+    assert np.mean([gain.apart > 2.6 for gain in right]) < 0.08
+    assert np.mean([gain.apart > 2.6 for gain in wrong]) > 0.8
+    assert np.median([gain.factor for gain in wrong]) == pytest.approx(9.81, rel=0.3)

@@ -3,7 +3,8 @@
 The poles of a car contain the smallest slope D of each damper law (`vehicle.engines.reduced.pole_model`). Every drawn
 damper is a table through the nominal force F0 at the velocities v, scaled and bent,
 
-    F(v) = f F0(v) (|v|/v0)^p a^(+-1/2),    a^(+1/2) in rebound, a^(-1/2) in compression,
+    F(v) = f F0(v) (|v|/v0)^p h(|v|)/h(v0) a^(+-1/2),    a^(+1/2) in rebound, a^(-1/2) in compression,
+    h(v) = 1 below the knee vk,    (vk + (v - vk)/k)/v above: there the slope falls to 1/k, as where a valve opens,
 
 which continues beyond `FASTEST` with the same small slope D. The factor f is the ratio of forces at v0, averaged over
 both directions on a logarithmic scale.
@@ -53,7 +54,14 @@ def require_passive(composition: Composition) -> None:
             )
 
 
-def drawn_damper(nominal: Damper, factor: float, bend: float, rebound: float, friction: float) -> Damper:
+def drawn_damper(
+    nominal: Damper,
+    factor: float,
+    bend: float,
+    rebound: float,
+    friction: float,
+    knee: tuple[float, float] = (REFERENCE_VELOCITY, 1.0),
+) -> Damper:
     """Return a damper with another force over velocity.
 
     Args:
@@ -62,6 +70,7 @@ def drawn_damper(nominal: Damper, factor: float, bend: float, rebound: float, fr
         bend: exponent p [-]: above 0 progressive, below 0 degressive.
         rebound: a, ratio of rebound and compression [-].
         friction: friction over nominal [-].
+        knee: vk [m/s], and k, ratio of the slopes below and above it [-]: above 1 degressive, below 1 progressive.
     """
     curve = damper_curve(nominal)
     preload = float(curve.force(0.0))
@@ -70,6 +79,7 @@ def drawn_damper(nominal: Damper, factor: float, bend: float, rebound: float, fr
     force = (curve.force(velocity) - preload) * factor
     force = force * np.where(velocity > 0.0, rebound**0.5, rebound**-0.5)
     force = force * (np.maximum(np.abs(velocity), one_side[0]) / REFERENCE_VELOCITY) ** bend
+    force = force * _kneed(np.abs(velocity), *knee) / _kneed(np.array(REFERENCE_VELOCITY), *knee)
     slope = outer_slope(nominal)
     # A bent table may not fall, nor be flatter than the slope of the poles.
     rises = np.maximum(np.diff(force), slope * np.diff(velocity))
@@ -87,6 +97,12 @@ def drawn_damper(nominal: Damper, factor: float, bend: float, rebound: float, fr
         stribeck_friction=stribeck,
         tested=None,
     )
+
+
+def _kneed(speed: Vector, at: float, ratio: float) -> Vector:
+    """Return h, the share of the force that a knee leaves, at |v| [m/s]."""
+    beyond = np.maximum(speed, at)
+    return np.asarray((at + (beyond - at) / ratio) / beyond)
 
 
 def with_static_friction(damper: Damper, ratio: float) -> Damper:

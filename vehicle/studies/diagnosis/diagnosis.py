@@ -28,18 +28,23 @@ from vehicle.studies.diagnosis.drive_record import DriveRecord, Parts, read_driv
 from vehicle.studies.diagnosis.driven_modes import ModeFit
 from vehicle.studies.diagnosis.features import Bands, related_pairs, rows_of_points
 from vehicle.studies.diagnosis.learned import Learned
+from vehicle.studies.diagnosis.record_gain import GainTest
 from vehicle.studies.diagnosis.roughness import road_pieces
 from vehicle.studies.diagnosis.simulated_drives import RATE, TOGETHER, Drives, nominal_modes, simulated_drives
 
-DRIVES, MORE_DRIVES = 960, 1440
+DRIVES, MORE_DRIVES = 1200, 1440
 """Simulated drives for a known speed, and for a range of speeds."""
 
 SPEED_RATIO = 1.12
 """Largest ratio of the speeds that cars with one rolling speed of the tyres are used for."""
 
-USUAL, UNLIKE, WIDENING = 1.5, 3.5, 0.5
-"""Unlikeness of a record, see `Learned`: up to the first (94 % of the drives) intervals are not widened, beyond the
+USUAL, UNLIKE, WIDENING = 1.0, 3.5, 0.5
+"""Unlikeness of a record, see `Learned`: up to the first (84 % of the drives) intervals are not widened, beyond the
 second (0.3 %) the record is refused, and between both intervals grow by exp(WIDENING) a unit."""
+
+SURE_GAIN, WRONG_GAIN, GAIN_WIDENING = 2.0, 2.6, 1.0
+"""Distance of the gain of a record from 1, see `record_gain`: up to the first (95 % of the drives) intervals are not
+widened, beyond the second (1 %) the record is refused, and between both intervals grow by exp(GAIN_WIDENING) a unit."""
 
 LEVEL_MARGIN = 0.3
 """Largest excess of the mean log density of a record over all simulated drives [-]: a gain of 1.2 of the sensor."""
@@ -62,6 +67,7 @@ class Diagnostics:
         free: points whose horizontal axes have any direction.
         drives: simulated drives.
         learned: regression of the unknowns over the features.
+        gain_test: regression of the common gain of all sensors.
         at_wheels: the same regression with sensors at all wheels and strut tops; None for a car without these points.
         modes: regression of the modes.
         prior: cars at the middle speed.
@@ -73,6 +79,7 @@ class Diagnostics:
     free: tuple[str, ...]
     drives: Drives
     learned: Learned = field(repr=False)
+    gain_test: GainTest = field(repr=False)
     at_wheels: Learned | None = field(repr=False)
     modes: ModeFit = field(repr=False)
     prior: CarPrior = field(repr=False)
@@ -127,6 +134,7 @@ class Diagnostics:
             free=tuple(free),
             drives=simulated,
             learned=Learned(simulated.features[0], simulated.values, TOGETHER),
+            gain_test=GainTest(simulated.features[0], len(channels) * Bands.COUNT, TOGETHER),
             at_wheels=Learned(simulated.features[1], simulated.values, TOGETHER) if at_wheels else None,
             modes=ModeFit(simulated.features[0], simulated.modes, simulated.of("level"), TOGETHER),
             prior=priors[len(priors) // 2],
@@ -142,7 +150,7 @@ class Diagnostics:
         """Return the diagnosis of a record.
 
         Raises:
-            DataError: the record is unlike all simulated drives.
+            DataError: the record is unlike all simulated drives, or in another unit.
         """
         features = self.features(record, parts)
         self._require_level(record, features)
@@ -155,7 +163,15 @@ class Diagnostics:
                 "--speed, the channels of --map with their directions and units, and that the engine does not shake "
                 "the car"
             )
-        widened = float(np.exp(WIDENING * max(0.0, unlike - USUAL)))
+        gain = self.gain_test.gain(features)
+        if not gain.apart <= WRONG_GAIN:
+            raise DataError(
+                f"{record.name}: its accelerations are about {number(gain.factor, 2)} times those that belong to the "
+                f"friction of the dampers of {self.car} and to the noise of sensors: {number(gain.apart, 2)} standard "
+                f"deviations away, but at most {WRONG_GAIN:g} are accepted; check the units (--unit)"
+            )
+        excess = max(0.0, WIDENING * (unlike - USUAL), GAIN_WIDENING * (gain.apart - SURE_GAIN))
+        widened = float(np.exp(excess))
         unknowns = dict(zip(self.drives.names, self.learned.posteriors(features, widened), strict=True))
         speed, level, waviness = (unknowns[name].quantile(0.5) for name in ("speed", "level", "waviness"))
         nominal = nominal_modes(self.prior, speed, 10.0**level, waviness)
@@ -246,7 +262,7 @@ def diagnose_car(
         forward: axis of these devices that points forward, for example "y" or "-z"; unknown by default, then it
             follows from the changes of a recorded speed.
         parts: groups of unknowns for the table, of `GROUPS`.
-        count: number of simulated drives; by default 960, and 1440 for a range of speeds.
+        count: number of simulated drives; by default 1200, and 1440 for a range of speeds.
         seed: seed of the simulated drives.
         progress: called with the share that is done.
 

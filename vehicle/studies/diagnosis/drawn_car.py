@@ -30,17 +30,22 @@ FRICTION, FRICTION_SIDES, STATIC = 1.7, 1.4, 2.0
 """Ratio by which the friction of both dampers of an axle is smaller or larger, and of one damper further; largest ratio
 of friction at rest and in motion, for Stribeck friction in place of Coulomb friction."""
 
-BEND, REBOUND = 0.25, 1.2
-"""Largest exponent of the shape of a damper, and largest ratio of its rebound and compression, of an axle."""
+BEND, REBOUND = 0.2, 1.2
+"""Largest exponent of the shape of the dampers of an axle, and largest ratio of their rebound and compression."""
+
+KNEE, KNEE_VELOCITY = 1.8, (0.03, 0.2)
+"""Largest ratio of the slopes below and above the knee of one damper, either way, and range of its velocity [m/s],
+logarithmic: valves differ, and wear moves them."""
 
 TYRE, TYRE_SIDES, TYRE_DAMPING = 1.15, 1.08, 2.0
 """Ratios of the vertical stiffness of the tyres of an axle, of one tyre further, and of their damping."""
 
-SPRING, MOUNT, MOUNT_SIDES, BODY = 1.3, 1.3, 1.2, 1.05
+SPRING, MOUNT, MOUNT_SIDES, BODY = 1.3, 1.3, 1.35, 1.05
 """Ratios of springs and stabilizers, of both bushings of an axle, of one bushing further, and of the body mass."""
 
-LOADS = {"front_left": (0.45, -0.35, 100.0), "front_right": (0.45, 0.35, 100.0), "rear": (0.85, 0.0, 250.0)}
-"""Loads: distance from the front axle over the wheelbase [-], distance from the middle [m], largest mass [kg]."""
+LOADS = {"front_left": (0.45, -0.35, 110.0), "front_right": (0.45, 0.35, 110.0), "rear": (0.85, 0.0, 250.0)}
+"""Loads: distance from the front axle over the wheelbase [-], distance from the middle [m], largest mass [kg]. The
+rear and one of the front seats, either, are empty in half of the cars."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -135,8 +140,10 @@ class CarPrior:
             overrides |= {f"{path}.stiffness.{axis}": factor * value for axis, value in by_axis if value > 0.0}
         values["body"] = _ratio(BODY, rng)
         overrides["body.mass"] = values["body"] * self.car.vehicle.body.mass
+        seats = ("front_left", "front_right", None, None)
+        empty = (seats[rng.integers(4)], "rear" if rng.random() < 0.5 else None)
         for name, (_, _, heaviest) in LOADS.items():
-            values[f"load {name}"] = float(rng.uniform(0.0, heaviest))
+            values[f"load {name}"] = 0.0 if name in empty else float(rng.uniform(0.0, heaviest))
             overrides[f"load.{name}.mass"] = values[f"load {name}"]
         car = self.car.with_(overrides)
         poles = car.poles
@@ -154,7 +161,8 @@ class CarPrior:
             wheel = placed.name.removeprefix("damper_")
             friction, bend, rebound = axles[axle_and_side(wheel)[0]]
             factor, friction = float(rng.uniform(WEAKEST, STRONGEST)), friction * _ratio(FRICTION_SIDES, rng)
-            dampers.append(drawn_damper(nominal, factor, bend, rebound, friction))
+            knee = float(np.exp(rng.uniform(*np.log(KNEE_VELOCITY)))), _ratio(KNEE, rng)
+            dampers.append(drawn_damper(nominal, factor, bend, rebound, friction, knee))
             if nominal.friction_law == "coulomb" and rng.random() < 0.5:
                 dampers[-1] = with_static_friction(dampers[-1], float(rng.uniform(1.0, STATIC)))
             values |= {f"damper {wheel}": factor, f"friction {wheel}": friction}

@@ -56,8 +56,8 @@ TOGETHER = USES * LANES
 SPEED = 1.02
 """Ratio of true and stated speed."""
 
-NOISE, GAIN = (0.005, 0.05), 1.03
-"""Noise of a sensor [m/s2], RMS at 250 Hz; ratio of its gain."""
+NOISE, GAIN = (0.005, 0.1), 1.03
+"""Noise of a sensor and hum of the car [m/s2], RMS at 250 Hz; ratio of the gain of a sensor."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
