@@ -203,14 +203,27 @@ class LawSearch:
         self.squares: dict[DamperLaw, Vector] = {}  # mean squares of the errors of all fitted laws; (tests,) each
 
     def run(self) -> dict[DamperLaw, DamperFit]:
-        """Return all fits by their laws."""
+        """Return all fits by their laws, without those that `slipping` leaves out."""
         first = DamperLaw(setting="lag" if self.tests[0].setting is not None else "")
         self._fit(first, first_start(first, self.tests))
         improved = [self.fits[first]]
         while improved:
             self._grow(improved)
             improved = self._shrink()
-        return self.fits
+        return self.slipping()
+
+    def slipping(self) -> dict[DamperLaw, DamperFit]:
+        """Return the fits whose sliders all slip in a test.
+
+        Another slider is a spring there: the law with gas stiffness fits alike, without a sliding force that no test
+        shows. From a reversal to slip a slider takes twice its stroke from rest.
+        """
+        longest = max(float(np.ptp(test.displacement)) for test in self.tests)
+        strokes = {
+            law: [value for name, value in zip(law.parameters, fit.parameters, strict=True) if "slider_stroke" in name]
+            for law, fit in self.fits.items()
+        }
+        return {law: fit for law, fit in self.fits.items() if 2.0 * max(strokes[law], default=0.0) < longest}
 
     def _fit(self, law: DamperLaw, starts: Sequence[Vector]) -> bool:
         """Fit a law from some starts; return True if it is judged: new or fitted better than before, and not poor."""

@@ -95,9 +95,13 @@ class DamperFit:
         """Return the errors of whole tests left out; NaN with a single test; (tests,).
 
         With two tests these are the errors in each by the fit to the other: parts of a record left out are inside what
-        the fit has seen.
+        the fit has seen. Ranges are compared with means over parts of a cycle, `thinned`: their squares tell by how
+        much the fit to the other adds to the error of the fit, which has the noise of single samples.
         """
-        return self.left_out if "other" not in self.ranges else self.ranges["other"][0]
+        if "other" not in self.ranges:
+            return self.left_out
+        without, within = self.ranges["other"]
+        return np.asarray(np.sqrt(self.fitted**2 + np.maximum(without**2 - within**2, 0.0)))
 
     @property
     def logarithms(self) -> Vector:

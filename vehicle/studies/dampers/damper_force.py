@@ -242,9 +242,10 @@ def steady_force(law: DamperLaw, parameters: Vector, velocity: Vector) -> tuple[
     _, curve = _curve_columns(law, values, velocity, STEP)
     columns = np.zeros((velocity.size, len(names)))
     columns[:, 1 : 1 + curve.shape[1]] = curve
-    for i in range(law.elements):
-        columns[:, names.index(f"slider_limit_{i + 1}")] = np.sign(velocity)
-    return _curve_force(values, velocity, STEP) + np.sign(velocity) * np.sum(values.limit), columns
+    steps = [at for at, name in enumerate(names) if name.startswith("slider_limit_") or name == "outer_friction"]
+    columns[:, steps] = np.sign(velocity)[:, None]
+    sliding = float(np.sum(values.limit)) + values.outer_friction
+    return _curve_force(values, velocity, STEP) + np.sign(velocity) * sliding, columns
 
 
 def _curve_force(values: DamperValues, velocity: Vector, step_width: float) -> Vector:

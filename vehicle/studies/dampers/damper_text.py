@@ -11,11 +11,11 @@ from vehicle.model.parameters.tested_range import range_lines
 from vehicle.signals.formats.csv_table import table_text
 from vehicle.studies.dampers.damper_band import stored_band
 from vehicle.studies.dampers.damper_choice import WORST
-from vehicle.studies.dampers.damper_fit import DamperFit
+from vehicle.studies.dampers.damper_fit import RANGES, DamperFit
 from vehicle.studies.dampers.damper_force import steady_force
 from vehicle.studies.dampers.damper_law import EXPONENT, SETTING, SMOOTHING, values_of
 from vehicle.studies.dampers.damper_ranges import RATIO, Expected, expected_error
-from vehicle.studies.dampers.fitted_damper import FittedDamper
+from vehicle.studies.dampers.fitted_damper import AT_LIMIT, FittedDamper
 from vehicle.studies.dampers.residual_diagnosis import missing_text
 
 SLIP = 0.006
@@ -163,6 +163,8 @@ def _mount_lines(fitted: FittedDamper, spread: Mapping[str, float]) -> list[str]
     law, values = fitted.fit.law, values_of(fitted.fit.law, fitted.fit.parameters)
     if not law.series:
         return []
+    if not law.gap and values.series > RANGES["series_stiffness"][1] / AT_LIMIT:
+        return ["# no series stiffness: the tests show none, and the mount of the rod stays as it is"]
     lines = [
         f"# series stiffness {values.series:.4g} N/m, standard error {number(spread['series_stiffness'], 2)} N/m:",
         "# eye, oil and machine together. It belongs to the mount of the rod, 1/K = 1/K_mount + 1/K_series:",
