@@ -139,6 +139,14 @@ def test_the_lines_are_the_fitted_law(law, tmp_path):
     assert control_lines([fitted, fitted]).startswith("# damping: constant with the work of the curve in the tests")
 
 
+@pytest.mark.parametrize(("stiffness", "line"), [(2e7, "stiffness.z = 20000000.0"), (1e9, "no series stiffness")])
+def test_only_a_stiffness_that_the_tests_show_is_for_the_mount(stiffness, line, tmp_path):
+    law, test = DamperLaw(friction="coulomb", series=True), read_test(Path(records(tmp_path)[0]))
+    fit = DamperFit(law=law, parameters=np.array([150.0, 1200.0, 60.0, stiffness]), errors=np.ones(4))
+    text = vehicle_lines(FittedDamper(conditions={}, tests=[test], fit=fit, compared=[fit]))
+    assert line in text and ("stiffness.z" in text) == (stiffness < 1e9)
+
+
 def test_wrong_files_are_named(tmp_path, capsys):
     path = records(tmp_path)[0]
     assert main([path, path, "--output", str(tmp_path / "out")]) == 2
