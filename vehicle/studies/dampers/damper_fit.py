@@ -95,8 +95,8 @@ class DamperFit:
         """Return the errors of whole tests left out; NaN with a single test; (tests,).
 
         With two tests these are the errors in each by the fit to the other: parts of a record left out are inside what
-        the fit has seen. Ranges are compared with means over parts of a cycle, `thinned`: their squares tell by how
-        much the fit to the other adds to the error of the fit, which has the noise of single samples.
+        the fit has seen. Ranges are compared with means over parts of a cycle, `thinned`: the difference of the squares
+        is the part of the fit to the other; the error of the fit has the noise of single samples.
         """
         if "other" not in self.ranges:
             return self.left_out

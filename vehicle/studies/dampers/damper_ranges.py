@@ -28,8 +28,8 @@ m octaves of tested velocities, the next event is a bend before the end of an oc
 the further test. The slope behind it is at least zero, and at most F/v or that of the last segment. A law without this
 bend has an error in each of these cases: their mean square and their limit of nine of ten replace the values above
 where they are larger. Inside the tests, e_in is the geometric mean of the errors left out; with two tests, of the
-error in each by the fit to the other (`DamperFit.further`). e_in,90 is the upper limit of a further value of a normal distribution of their
-logarithms, from Student's t: m + t_90(n - 1) s sqrt(1 + 1/n).
+error in each by the fit to the other, see `DamperFit.further`. e_in,90 is the upper limit of a further value of a
+normal distribution of their logarithms, from Student's t: m + t_90(n - 1) s sqrt(1 + 1/n).
 
 Sources: rule of succession: Laplace, Essai philosophique sur les probabilites; random walk as discrepancy of a model:
 Kennedy and O'Hagan, J. R. Stat. Soc. B 63 (2001), 4.2; variance over models: Hoeting et al., Statistical Science 14
