@@ -273,10 +273,10 @@ def knee(diagnostics, car, count, seed):
                 if diagnosis is not None:
                     each = diagnosis.damper("rl").quantile(0.5) - case[0], diagnosis.worn("rl")
                     found.setdefault((name, *case), []).append(each)
-    for (name, factor, ratio, velocity), each in found.items():
-        apart, worn = np.array(each).T
+    for (name, factor, ratio, velocity), pairs in found.items():
+        apart, worn = np.array(pairs).T
         print(
-            f"knee, {name}: force {factor:g}, slopes {ratio:g} to 1 at {velocity:g} m/s: n {len(each)}, median apart "
+            f"knee, {name}: force {factor:g}, slopes {ratio:g} to 1 at {velocity:g} m/s: n {len(pairs)}, median apart "
             f"{apart.mean():.2f} +-{apart.std():.2f}, P(worn) {worn.mean():.2f}, up to {worn.max():.2f}",
             flush=True,
         )
