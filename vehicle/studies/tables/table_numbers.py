@@ -23,7 +23,7 @@ ONE_WHEEL, WHOLE_AXLE = 55.0, 75.0
 LIGHT_AXLE, HEAVY_WHEEL = 250.0, 600.0
 """Sprung mass over an axle [kg]: lightest of an axle, and heaviest of a wheel."""
 
-_OF_BOTH_WHEELS = re.compile(r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bpair\b")
+_OF_BOTH_WHEELS = re.compile(r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bpair\b|\b(two|2|beide\w*) (wheels|räder)\b")
 """Words of a rate of both wheels of an axle together."""
 
 _SYSTEM = re.compile(r"(?P<si>\bSI[ -](units?|Einheiten)\b|\bin SI\b)|"
@@ -225,7 +225,8 @@ def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_su
     said, is_rate = f"{row.name.text} {row.note}".lower(), QUANTITIES[key].dimension in (RATE, DAMPING)
     if is_rate and _OF_BOTH_WHEELS.search(said):
         return replace(value, value=0.5 * value.value, text=f"1/2 x {value.text}")
-    if is_rate and row.name.has("heave") and not set(words_of(said)) & set(PER_WHEEL):
+    whole = row.name.has("heave") or "total" in words_of(row.name.text)
+    if is_rate and whole and not set(words_of(said)) & set(PER_WHEEL):
         raise DataError(f"{row.where}: {row.name.text!r} may be of a wheel or of both; write \"per wheel\" or "
                         "\"per axle\" in its name")  # fmt: skip
     if key == "kerb_mass" and "occupied" in words_of(row.name.text):

@@ -118,7 +118,8 @@ def _quantities(head: Row, below: Sequence[Row]) -> list[Row]:
     if not below or any(map(_is_number, head.cells)):
         return []
     names = [name_and_unit(cell) for cell in head.cells]
-    plain_names = [name_words(text, right_letter="") for text, _ in names]
+    # "Weight distribution front/rear" and a remark on both axles have two places.
+    plain_names = [name_words(_BOTH.sub(" ", text), right_letter="") for text, _ in names]
     if sum(bool(name.terms) and number_of(name) is not None for name in plain_names) < 2:
         # An axle load has no axle in its name here.
         plain_names = [name_words(f"front {text}", right_letter="") for text, _ in names]
