@@ -15,12 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from vehicle.errors import DataError
-from vehicle.studies.tables.name_words import words_of
 from vehicle.studies.tables.table_numbers import AGREE, AXLES, CarNumbers, Values, key_words
-
-LIGHT_BODY = 750.0
-"""Sprung mass [kg] below which a lumped model may be one of a quarter or a half of a car; assumed: the bodies of
-passenger cars weigh more, half of a body mostly less."""
 
 
 @dataclass(slots=True)
@@ -136,11 +131,6 @@ def _masses(table: _Numbers) -> None:
             raise DataError(f"sprung mass {whole:g} kg and unsprung masses {unsprung['front']:g} and "
                             f"{unsprung['rear']:g} kg: together {total:g} kg instead of the mass of {kerb:g} kg; "
                             "correct one (unsprung masses: of an axle or of a wheel?)")  # fmt: skip
-        text = values["sprung_mass", ""].text
-        is_said = text.startswith("4 x") or {"vehicle", "total"} & set(words_of(text))
-        if kerb is None and whole < LIGHT_BODY and not is_said:
-            raise DataError(f"sprung mass {whole:g} kg may be of a quarter, a half or the whole of a car; write "
-                            "\"quarter\" or \"vehicle\" in its name, or add the mass of the car")  # fmt: skip
         kerb = total if kerb is None else kerb
         table.put("kerb_mass", kerb, ("kerb_mass", ""), ("sprung_mass", ""), why="with the unsprung masses")
     elif kerb is not None:

@@ -23,7 +23,10 @@ ONE_WHEEL, WHOLE_AXLE = 55.0, 75.0
 LIGHT_AXLE, HEAVY_WHEEL = 250.0, 600.0
 """Sprung mass over an axle [kg]: lightest of an axle, and heaviest of a wheel."""
 
-_OF_BOTH_WHEELS = re.compile(r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bpair\b|\b(two|2|beide\w*) (wheels|räder)\b")
+_OF_BOTH_WHEELS = re.compile(
+    r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bpair\b|\b(two|2|beide\w*) (wheels|räder)\b|"
+    r"\btotal axle\b|\baxle total\b|\bleft ?[+] ?right\b"
+)
 """Words of a rate of both wheels of an axle together."""
 
 _SYSTEM = re.compile(r"(?P<si>\bSI[ -](units?|Einheiten)\b|\bin SI\b)|"
@@ -46,6 +49,12 @@ ONE_AXLE = 120.0
 
 AGREE = 0.01
 """Relative difference of two statements of one number that is round-off."""
+
+
+_HALF = re.compile(r"\bhalf[ -]*(car|vehicle)|\bhalbfahrzeug", re.IGNORECASE)
+LIGHT_BODY = 750.0
+"""Sprung mass [kg] below which a lumped model may be one of a quarter or a half of a car; assumed: the bodies of
+passenger cars weigh more, half of a body mostly less."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -138,6 +147,7 @@ def read_numbers(content: Statements, result: CarNumbers) -> Values:
     for (key, axle), sides in corners.items():
         values[key, axle] = _both_strokes(sides, result) if set(STROKES) & set(sides) else (
             _both_sides(key, axle, sides, result))  # fmt: skip
+    _require_whole_body(values, content.remarks)
     loaded = {axle for key, axle in values if key == "tyre_radius"}
     for axle in [axle for key, axle in values if key == "rolling_radius"]:
         rolling = values.pop(("rolling_radius", axle))
@@ -147,6 +157,17 @@ def read_numbers(content: Statements, result: CarNumbers) -> Values:
             values["tyre_radius", axle] = rolling
             result.guessed.append((rolling.where, f"{rolling.text}: taken as the loaded radius"))
     return values
+
+
+def _require_whole_body(values: Values, remarks: Sequence[str]) -> None:
+    """Refuse a sprung mass that may be one of a quarter or a half of a car, where the mass of the car is not stated."""
+    body = values.get(("sprung_mass", ""))
+    if body is None or ("kerb_mass", "") in values or body.text.startswith("4 x") or \
+            {"vehicle", "total"} & set(words_of(body.text)):  # fmt: skip
+        return
+    if body.value < LIGHT_BODY or _HALF.search(" ".join(remarks)):
+        raise DataError(f"{body.where}: {body.text} may be of a quarter, a half or the whole of a car; write "
+                        "\"quarter\" or \"vehicle\" in its name, or add the mass of the car")  # fmt: skip
 
 
 def _si(row: Number, key: str, remarks: Sequence[str], result: CarNumbers) -> float:
