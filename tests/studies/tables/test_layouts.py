@@ -115,6 +115,8 @@ NUMBERS: dict[str, tuple[str, dict[str, float | None]]] = {
     "quarter car in a long title": (
         "Quarter car model of a passenger car\nm_s;sprung mass;290;kg\nm_us;unsprung mass per wheel;59;kg\n",
         {"kerb_mass": 4 * (290.0 + 59.0), "unsprung_mass_rear": 118.0}),
+    "no bar": ("wheel rate rear,28,N/mm\ntrack rear,1500,mm\nanti-roll bar rate rear,0,Nm/deg\n",
+               {"roll_stiffness_rear": 0.5 * 28e3 * 1.5**2 * math.pi / 180.0}),
     "data sheet": ("Masses of front and rear\nItem\tData\nKerb weight DIN (kg)\t2,140\n"
                    "Weight distribution front/rear\t48:52\n"
                    "Tyres\t235/60 R18 107V\nSpring rate front (two wheels)\t64.5 N/mm\n"
@@ -264,6 +266,12 @@ def test_texts_and_numbers_of_a_sheet_have_points_of_their_own(tmp_path):
     numbers = car_table([tmp_path / "van.xlsx"], template_car("sedan").point_names, {}).numbers
     assert numbers == {"kerb_mass": 2050.0, "front_axle_load": 1185.0, "wheelbase": 3.45, "track_front": 1.734,
                        "track_rear": 1.716, "tyre_size": "235/60 R18 107V"}  # fmt: skip
+
+
+def test_a_number_that_others_replace_is_named(tmp_path):
+    table = read(tmp_path, "mass,1400,kg\nroll stiffness front,60,kNm/rad\nroll stiffness total,100,kNm/rad\n"
+                 "front damper constant,1500,Ns/m\nfront damping ratio,0.3\n", name="car.csv")  # fmt: skip
+    assert [text.split(" =")[0] for _, text in table.left_out] == ["roll stiffness total", "front damping ratio"]
 
 
 def test_a_row_without_its_number_is_named(tmp_path):

@@ -51,6 +51,7 @@ AGREE = 0.01
 """Relative difference of two statements of one number that is round-off."""
 
 
+NO_BAR = {("bar_rate", 0.0), ("bar_wheel_rate", 0.0)}
 _HALF = re.compile(r"\bhalf[ -]*(car|vehicle)|\bhalbfahrzeug", re.IGNORECASE)
 LIGHT_BODY = 750.0
 """Sprung mass [kg] below which a lumped model may be one of a quarter or a half of a car; assumed: the bodies of
@@ -310,7 +311,8 @@ def _both_strokes(sides: Mapping[str, Stated], result: CarNumbers) -> Stated:
 
 def _require_size(row: Number, key: str, value: float) -> None:
     low, high = QUANTITIES[key].sizes
-    if not (math.isfinite(value) and low <= value <= high):
+    # An axle may have no bar.
+    if not (math.isfinite(value) and low <= value <= high) and (key, value) not in NO_BAR:
         unit = SI[QUANTITIES[key].dimension]
         raise DataError(f"{row.where}: {_text(row)} is {shown(value, 4)} {unit}, must be {low:g} to {high:g} {unit}; "
                         "check value and unit")  # fmt: skip
