@@ -92,7 +92,7 @@ def _lengths(table: _Numbers, points: Mapping[str, Any]) -> None:
                 f"{key_words(key, axle)}: stated {stated:g} m, but the points give {placed:.4f} m; correct one"
             )
         if placed is not None:
-            table.put(name, round(placed, 9), why="points")
+            table.put(name, round(placed, 9), (key, axle), (key, ""), why="points")
         elif stated is not None:
             table.put(name, stated, (key, axle), (key, ""))
     rear = table.get("tyre_radius", "rear")

@@ -23,7 +23,7 @@ PLAIN: dict[str, str] = {
     "absorber": "damper", "daempfer": "damper", "dämpfer": "damper", "stoßdämpfer": "damper",
     "shockabsorber": "damper", "federbein": "strut", "pherson": "", "mc": "", "feder": "spring", "springs": "spring",
     "coil": "spring", "arb": "bar", "stabilizer": "bar", "stabiliser": "bar", "stabi": "bar", "stabilisator": "bar",
-    "antiroll": "bar", "antirollbar": "bar", "sway": "bar", "swaybar": "bar", "rollbar": "bar",
+    "antiroll": "bar", "antirollbar": "bar", "sway": "bar", "swaybar": "bar", "rollbar": "bar", "auxiliary": "bar",
     "droplink": "droplink", "endlink": "droplink", "pendelstütze": "droplink", "trailingarm": "trailing arm",
     "längslenker": "trailing arm", "lager": "", "punkt": "", "stützlager": "top", "domlager": "top",
     "upright": "knuckle", "radträger": "knuckle", "hub": "knuckle",
