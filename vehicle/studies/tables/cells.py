@@ -94,7 +94,7 @@ def read_cells(path: Path) -> CellTable:
             for title, sheet in sheets.items()
             for number, cells in enumerate(sheet, 1)
         ]
-        # The point of a numeric cell tells nothing about the points and commas of texts.
+        # A numeric cell has a decimal point, also where texts have decimal commas.
         texts = [cell.strip() for sheet in sheets.values() for row in sheet for cell in row if isinstance(cell, str)]
     else:
         rows = _text_rows(path)
