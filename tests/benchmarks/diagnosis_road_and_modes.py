@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.diagnosis_road_and_modes
 
-The sedan at 79 km/h for 39 s, 960 drives of training, 120 new drives on 40 roads: a phone at the seat rail, its
+The sedan at 79 km/h for 39 s, the default number of drives, 120 new drives on 40 roads: a phone at the seat rail, its
 horizontal axes known or in any direction, and eight sensors. Then classes A to D through the contact cams, against the
 index of `road --iri`. At last the phone at other speeds: RMS error of the dampers in prior standard deviations.
 """

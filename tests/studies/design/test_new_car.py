@@ -234,6 +234,8 @@ def test_the_size_of_a_tyre_is_its_radius_without_load(surveyed):
     assert wheels["fl"].center[2] - wheels["fl"].patch[2] + deflection == pytest.approx(0.31595, abs=1e-5)
 
     assert unloaded_radius("215/65R16C 109/107T") == unloaded_radius("215/65R16") == pytest.approx(0.34295, abs=1e-6)
+    # A truck: half of 17.5 inch, 222.25 mm, and 0.75 215 = 161.25 mm.
+    assert unloaded_radius("215/75 R 17.5 C 126/124M") == pytest.approx(0.3835, abs=1e-6)
 
 
 def test_a_new_car_has_the_step_that_it_needs_and_not_that_of_its_template(surveyed):

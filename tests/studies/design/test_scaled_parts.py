@@ -95,6 +95,10 @@ def test_an_unusual_figure_of_the_template_is_named():
     assert re.search(r"front: caster \[deg\] 11\.04, .*1 to 9.*template kinematic_reference$", caster)
     (stated,) = unusual(new_car("one", "sedan", StatedNumbers(tyre_radius=0.45)))[:1]
     assert re.search(r"loaded tyre radius \[mm\] 450, .*240 to 400.*tyre radius 0\.45 m \(given\)$", stated)
+    # A ride frequency follows from the stated wheel rate, its other form.
+    stiff = unusual(new_car("one", "sedan", StatedNumbers(wheel_rate_front=6e4)))
+    (frequency,) = [note for note in stiff if "front: ride frequency" in note]
+    assert frequency.endswith("follows from wheel rate front 60000 N/m (given)")
 
 
 def test_a_refused_hop_says_what_can_be_reached():

@@ -2,6 +2,7 @@
 
 import math
 
+import openpyxl  # type: ignore[import-untyped]
 import pytest
 
 from tests.studies.tables.test_car_table import POINTS, WORDS, read, require_points, rows
@@ -111,6 +112,19 @@ NUMBERS: dict[str, tuple[str, dict[str, float | None]]] = {
                {"kerb_mass": 1400.0, "unsprung_mass_front": 80.0, "wheelbase": 2.6, "wheel_rate_front": 25e3}),
     "quarter car": ("Quarter car\nSprung mass,300,kg\nUnsprung mass,40,kg\nwheelbase,2.6,m\n",
                     {"kerb_mass": 1360.0, "unsprung_mass_rear": 80.0}),
+    "quarter car in a long title": (
+        "Quarter car model of a passenger car\nm_s;sprung mass;290;kg\nm_us;unsprung mass per wheel;59;kg\n",
+        {"kerb_mass": 4 * (290.0 + 59.0), "unsprung_mass_rear": 118.0}),
+    "no bar": ("wheel rate rear,28,N/mm\ntrack rear,1500,mm\nanti-roll bar rate rear,0,Nm/deg\n",
+               {"roll_stiffness_rear": 0.5 * 28e3 * 1.5**2 * math.pi / 180.0}),
+    "data sheet": ("Masses of front and rear\nItem\tData\nKerb weight DIN (kg)\t2,140\n"
+                   "Weight distribution front/rear\t48:52\n"
+                   "Tyres\t235/60 R18 107V\nSpring rate front (two wheels)\t64.5 N/mm\n"
+                   "Rear spring rate (left + right)\t50 N/mm\n",
+                   {"kerb_mass": 2140.0, "front_axle_load": 0.48 * 2140.0,
+                    "wheel_rate_front": 32250.0, "wheel_rate_rear": 25000.0}),
+    "left and right hand": ("name,front,rear,unit\nCorner weight LH,290,410,lb\nCorner weight RH,290,410,lb\n",
+                            {"front_axle_load": 580 * 0.45359237, "rear_axle_load": 820 * 0.45359237}),
     "below a title of corners": ("Corner weights\nFL,410,kg\nTotal mass,1450,kg\n", {"kerb_mass": 1450.0}),
     "lumped model": ("ms,1200,kg\nmuf,80,kg\nmur,70,kg\na,1.1,m\nb,1.5,m\n",
                      {"cog_x": round((1200 * 1.1 + 70 * 2.6) / 1350.0, 6), "unsprung_mass_rear": 70.0}),
@@ -242,6 +256,31 @@ CURVES = {
 }  # fmt: skip
 
 
+def test_texts_and_numbers_of_a_sheet_have_points_of_their_own(tmp_path):
+    book = openpyxl.Workbook()
+    for row in (("Leergewicht", "2.050", "kg"), ("Achslast vorne", "1.185,0", "kg"), ("Radstand", 3.45, "m"),
+                ("Spurweite vorn", 1.734, "m"), ("Spurweite hinten", "1.716", "mm"),
+                ("Bereifung", "235/60 R18 107V")):  # fmt: skip
+        book.active.append(row)
+    book.save(tmp_path / "van.xlsx")
+    numbers = car_table([tmp_path / "van.xlsx"], template_car("sedan").point_names, {}).numbers
+    assert numbers == {"kerb_mass": 2050.0, "front_axle_load": 1185.0, "wheelbase": 3.45, "track_front": 1.734,
+                       "track_rear": 1.716, "tyre_size": "235/60 R18 107V"}  # fmt: skip
+
+
+def test_a_number_that_others_replace_is_named(tmp_path):
+    table = read(tmp_path, "mass,1400,kg\nroll stiffness front,60,kNm/rad\nroll stiffness total,100,kNm/rad\n"
+                 "front damper constant,1500,Ns/m\nfront damping ratio,0.3\n", name="car.csv")  # fmt: skip
+    assert [text.split(" =")[0] for _, text in table.left_out] == ["roll stiffness total", "front damping ratio"]
+
+
+def test_a_row_without_its_number_is_named(tmp_path):
+    table = read(tmp_path, "name,value,unit\nmass,#REF!,kg\nwheelbase,2.6,m\n\nname,front,rear\ntrack [m],1.5,TBD\n",
+                 name="car.csv")  # fmt: skip
+    assert table.numbers == {"wheelbase": 2.6, "track_front": 1.5}
+    assert ["#REF!" in text or "TBD" in text for _, text in table.left_out] == [True, True]
+
+
 @pytest.mark.parametrize("case", CURVES)
 def test_damper_curves_of_a_layout(case, tmp_path):
     table = read(tmp_path, CURVES[case], name="car.csv")
@@ -263,6 +302,9 @@ BAD = {
         "sprung mass front,400,kg\nunsprung mass front axle,80,kg\n",
         "of a wheel or of an axle",
     ),
+    "total of a rate": ("Front suspension stiffness (total),50,N/mm\n", "of a wheel or of both"),
+    "half of a car": ("Half-car model\nm_s,900,kg\nm_uf,40,kg\nm_ur,45,kg\n", "a quarter, a half or the whole"),
+    "light body": ("m_s,690,kg\nm_uf,40,kg\nm_ur,45,kg\n", "a quarter, a half or the whole"),
     "one stroke": ("Damping front rebound,3000,N s/m\n", "of one stroke"),
     "all wheels": ("Total unsprung mass,90,kg\n", "of an axle or of all wheels"),
     "all wheels by size": ("Unsprung mass,160,kg\n", "of an axle or of all wheels"),

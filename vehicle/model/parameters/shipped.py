@@ -37,8 +37,8 @@ def vehicle_file(path: Path | str) -> Path:
         raise ConfigurationError(
             f"{path}: is not a vehicle file; give a TOML file of a car, its folder, or a shipped car "
             f"({', '.join(CARS)}). A table of points, masses and rates (CSV, XLSX), points and parts of an Adams model "
-            "(.adm, .cmd, .sub), a CarSim file (.par), a URDF and a tyre file (.tir) become a car with vehicle new NAME "
-            "--table FILE; a property file from Adams Car belongs in a vehicle file, for example curve = FILE.dpr"
+            "(.adm, .cmd, .sub), a CarSim file (.par), a URDF and a tyre file (.tir) become a car with vehicle new "
+            "NAME --table FILE; a property file from Adams Car belongs in a vehicle file, for example curve = FILE.dpr"
         )
     if path.is_dir() and (path / "vehicle.toml").is_file():
         return path / "vehicle.toml"

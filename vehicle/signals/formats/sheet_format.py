@@ -67,20 +67,18 @@ def _sheets(path: Path, *, formulas: bool = False) -> dict[str, list[tuple[objec
 
 def read_sheet_texts(path: Path) -> list[list[str]]:
     """Read the cells of the first sheet as texts, numbers with all digits; skip empty rows."""
-    sheet = next(iter(sheet_texts(path, first=True).values()), [])
-    return [list(row) for row in sheet if any(row)]
+    sheet = next(iter(sheet_cells(path, first=True).values()), [])
+    texts = [["" if cell is None else str(cell).strip() for cell in row] for row in sheet]
+    return [row for row in texts if any(row)]
 
 
-def sheet_texts(path: Path, *, first: bool = False) -> dict[str, list[tuple[str, ...]]]:
-    """Read the texts of the cells of all sheets, or of the first, by sheet title, numbers with all digits."""
+def sheet_cells(path: Path, *, first: bool = False) -> dict[str, list[tuple[object, ...]]]:
+    """Read the cells of all sheets, or of the first, by sheet title: texts, numbers, None for an empty cell."""
     sheets = dict(list(_sheets(path).items())[: 1 if first else None])
     for title in sheets:
         if _formulas(path, title):
             raise DataError(f"{path}: {NO_VALUES}")
-    return {
-        title: [tuple("" if cell is None else str(cell).strip() for cell in row) for row in rows]
-        for title, rows in sheets.items()
-    }
+    return sheets
 
 
 def _row(cells: tuple[object, ...]) -> str:

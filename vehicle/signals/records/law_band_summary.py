@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vehicle.digits import number
+from vehicle.digits import number, rounded
 from vehicle.names import point_words, side_of, slip_words
 from vehicle.stored import Stored
 
@@ -68,7 +68,7 @@ def band_sentence(summary: RunSummary) -> str:
         return ""
     effects, shares, edges = [], summary.slip_shares, (band.soft.slip_share, band.firm.slip_share)
     if (values := _comfort(summary).get("seat_rail")) is not None and values[1] > 0.0:
-        soft, firm = (f"{100.0 * (each / values[1] - 1.0):+.2g} %" for each in (values[0], values[2]))
+        soft, firm = (f"{rounded(100.0 * (each / values[1] - 1.0), 2):+.10g} %" for each in (values[0], values[2]))
         effects.append(f"the weighted acceleration of the seat rail by {soft} and {firm}")
     if shares:
         wheel = max(shares, key=lambda name: max(abs(edge[name] - shares[name]) for edge in edges))

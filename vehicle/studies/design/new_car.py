@@ -280,7 +280,9 @@ def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers, point
             for name in FOLLOWS.get(figure.name, ())
         ]
         origins = [f"follows from {stated.stated(name)}" if isinstance(getattr(stated, name), float) else
-                   f"follows from {option(name)}" for name in names if getattr(stated, name) is not None]  # fmt: skip
+                   f"follows from {option(name)}"
+                   for name in dict.fromkeys(form for name in names for form in (name, *OTHER_NAMES.get(name, ())))
+                   if getattr(stated, name) is not None]  # fmt: skip
         otherwise = f"from the template {template.name}"
         if points is not None and not names and len(points.points.get(axle_words.get(figure.axle, ""), {})) > 1:
             otherwise = f"from the points of {points.file}, others of the template {template.name}"

@@ -13,7 +13,7 @@ from vehicle.studies.design.template_car import TemplateCar
 INCH = 25.4e-3
 """Unit of the rim diameter [m]."""
 
-SIZE = re.compile(r"P?(\d+)/(\d+) *Z?R *(\d+)C?(?: *[\d/]+ *[A-Z])?", re.IGNORECASE)
+SIZE = re.compile(r"P?(\d+)/(\d+) *Z?R *(\d+(?:\.5)?) *C?(?: *[\d/]+ *[A-Z])?", re.IGNORECASE)
 """Width [mm], height in percent of it, rim [inch] of a radial tyre; C, load index and speed symbol may follow."""
 
 RANGES = {"width": (105, 395, "mm"), "height": (20, 95, "% of the width"), "rim": (10, 24, "inch")}
@@ -34,11 +34,11 @@ def unloaded_radius(size: str) -> float:
     matched = SIZE.fullmatch(size.strip())
     if matched is None:
         raise ConfigurationError(f"--tyre-size {size!r}: not the size of a radial tyre; {form}")
-    numbers = dict(zip(RANGES, map(int, matched.groups()), strict=True))
+    numbers = dict(zip(RANGES, map(float, matched.groups()), strict=True))
     for name, (low, high, unit) in RANGES.items():
         if not low <= numbers[name] <= high:
             raise ConfigurationError(
-                f"--tyre-size {size!r}: {name} {numbers[name]} {unit}, must be {low} to {high}; {form}"
+                f"--tyre-size {size!r}: {name} {numbers[name]:g} {unit}, must be {low} to {high}; {form}"
             )
     return INCH * numbers["rim"] / 2.0 + 1e-5 * numbers["width"] * numbers["height"]
 

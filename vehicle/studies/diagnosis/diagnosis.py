@@ -160,8 +160,8 @@ class Diagnostics:
                 f"{record.name}: cannot be a drive of {self.car} as described: its spectra are "
                 f"{number(unlike, 2)} standard deviations away from {len(self.drives.values)} simulated drives, "
                 f"but at most {UNLIKE:g} are accepted; farthest is {self._farthest(features)}. Check the car, "
-                "--speed, the channels of --map with their directions and units, and that the engine does not shake "
-                "the car"
+                "--speed, the channels of --map with their directions and units, that the engine does not shake the "
+                "car, and that the road has no cobbles, nor slabs whose joints meet both tracks at once"
             )
         gain = self.gain_test.gain(features)
         if not gain.apart <= WRONG_GAIN:

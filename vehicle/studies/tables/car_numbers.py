@@ -17,6 +17,9 @@ from typing import Any
 from vehicle.errors import DataError
 from vehicle.studies.tables.table_numbers import AGREE, AXLES, CarNumbers, Values, key_words
 
+NAMED = {"spring_rate", "ride_frequency", "wheel_hop", "free_radius", "tyre_radius", "bar_rate"}
+"""Numbers whose omission beside others has a sentence of its own."""
+
 
 @dataclass(slots=True)
 class _Numbers:
@@ -71,7 +74,11 @@ def car_numbers(
     _cog_and_inertia(table, points)
     for axle in AXLES:
         _rates(table, axle, at_spring=spring_points.get(axle, False))
+    said = " ".join([*result.origins.values(), *(text for _, text in result.parameters.values()),
+                     *(text for _, text in result.left_out)])  # fmt: skip
     for row, entry in values.items():
+        if row in table.used and row[0] not in NAMED and entry.text not in said:
+            result.left_out.append((entry.where, f"{entry.text}: not used beside the other numbers"))
         if row not in table.used:
             result.left_out.append((entry.where, f"{entry.text}: what it needs is not stated"))
 
@@ -85,7 +92,7 @@ def _lengths(table: _Numbers, points: Mapping[str, Any]) -> None:
                 f"{key_words(key, axle)}: stated {stated:g} m, but the points give {placed:.4f} m; correct one"
             )
         if placed is not None:
-            table.put(name, round(placed, 9), why="points")
+            table.put(name, round(placed, 9), (key, axle), (key, ""), why="points")
         elif stated is not None:
             table.put(name, stated, (key, axle), (key, ""))
     rear = table.get("tyre_radius", "rear")
@@ -292,7 +299,13 @@ def _rates(table: _Numbers, axle: str, *, at_spring: bool) -> None:
         text = f"{key_words('spring_rate', axle)} {spring:g} N/m{by_ratio}"
         table.result.left_out.append(("", f"{text}: the wheel rate of {wheel or 0.0:.0f} N/m counts"))
     if wheel is not None:
-        table.put(f"wheel_rate_{axle}", wheel, why, (why[0], ""), *((("motion_ratio", axle),) if ratio else ()))
+        table.put(
+            f"wheel_rate_{axle}",
+            wheel,
+            why,
+            (why[0], ""),
+            *((("motion_ratio", axle), ("motion_ratio", "")) if ratio else ()),
+        )
     if (frequency := table.get("ride_frequency", axle)) is not None:
         if f"wheel_rate_{axle}" in table.result.stated or f"spring_stiffness_{axle}" in table.result.stated:
             table.result.left_out.append(("", f"ride frequency {axle} {frequency:g} Hz: follows from the stated rate"))
@@ -318,7 +331,9 @@ def _damping(table: _Numbers, axle: str, ratio: float | None, *, at_spring: bool
     if wheel is not None:
         table.put(f"wheel_damping_{axle}", wheel, ("wheel_damping", axle), ("wheel_damping", ""))
     elif damper is not None and ratio is not None:
-        table.put(f"wheel_damping_{axle}", ratio**2 * damper, ("damper_constant", axle), ("damper_constant", ""))
+        key = "damper_ratio" if table.get("damper_ratio", axle) else "motion_ratio"
+        table.put(f"wheel_damping_{axle}", ratio**2 * damper, ("damper_constant", axle), ("damper_constant", ""),
+                  (key, axle), (key, ""))  # fmt: skip
     elif damper is not None and at_spring:
         table.put(f"damper_constant_{axle}", damper, ("damper_constant", axle), ("damper_constant", ""))
     elif damper is not None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.formats.sheet_format import sheet_texts
+from vehicle.signals.formats.sheet_format import sheet_cells
 from vehicle.signals.formats.text import read_text
 from vehicle.studies.tables.unit_factor import unit_factor
 
@@ -19,7 +19,7 @@ _POINTED = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+,\d+")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
 _POINTS = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+")
 """Number with points between thousands where the comma is decimal: "1.280"."""
-_GROUPS = re.compile(r"(?<![\d.,])(\d{1,3})((?:[ '\u2019\u202f\u00a0]\d{3})+)(?=[.,]\d|\D|$)(?! *\d)")
+_GROUPS = re.compile(r"(?<![\w.,])(\d{1,3})((?:[ '\u2019\u202f\u00a0]\d{3})+)(?=[.,]\d|\D|$)(?! *\d)")
 """Thousands with blanks or apostrophes between them: 1 450, 1'450."""
 _VECTOR = re.compile(r"([\[({]?)\s*([+-]?[\d.]+)\s*[,;/ ]\s*([+-]?[\d.]+)\s*[,;/ ]\s*([+-]?[\d.]+)\s*[\])}]?")
 """Three coordinates in one cell: "(0, 750, 300)", "0/750/300"."""
@@ -88,22 +88,31 @@ def read_cells(path: Path) -> CellTable:
     if path.stat().st_size > LARGEST_TABLE:
         raise ConfigurationError(f"{path}: is larger than {LARGEST_TABLE / 1e6:g} MB, so it is no table of a car")
     if path.suffix.lower() in (".xlsx", ".xlsm"):
+        sheets = sheet_cells(path)
         rows = [
-            Row(where=f"{path}: sheet {title!r}, row {number}", sheet=title, cells=cells)
-            for title, sheet in sheet_texts(path).items()
+            Row(where=f"{path}: sheet {title!r}, row {number}", sheet=title, cells=tuple(map(_sheet_text, cells)))
+            for title, sheet in sheets.items()
             for number, cells in enumerate(sheet, 1)
         ]
+        # A numeric cell has a decimal point, also where texts have decimal commas.
+        texts = [cell.strip() for sheet in sheets.values() for row in sheet for cell in row if isinstance(cell, str)]
     else:
         rows = _text_rows(path)
+        texts = [cell for row in rows for cell in row.cells]
     rows = [replace(row, cells=tuple(part for cell in row.cells for part in _parts(_plain(cell)))) for row in rows]
     if not any(NUMBER.fullmatch(cell) or WITH_UNIT.fullmatch(cell) for row in rows for cell in row.cells):
         raise DataError(f"{path}: has no cell with a number; save names, values and units as CSV or XLSX")
-    numbers = [match[1] if (match := WITH_UNIT.fullmatch(cell)) else cell for row in rows for cell in row.cells]
+    parts = [part for cell in texts for part in _parts(_plain(cell))]
+    numbers = [match[1] if (match := WITH_UNIT.fullmatch(cell)) else cell for cell in parts]
     comma = _comma(numbers)
-    # A numeric cell of Excel has a point wherever a text has a comma.
-    is_sheet = any(row.sheet for row in rows)
-    points = "decimal" if comma != "decimal" else "unknown" if is_sheet else _points(numbers)
+    points = "decimal" if comma != "decimal" else _points(numbers)
     return CellTable(rows=tuple(rows), comma=comma, points=points)
+
+
+def _sheet_text(cell: object) -> str:
+    """Return the text of a cell of Excel; a number has another count of decimals than a thousand with its point."""
+    text = "" if cell is None else str(cell).strip()
+    return f"{text}0" if isinstance(cell, float) and _POINTS.fullmatch(text) else text
 
 
 def _plain(cell: str) -> str:

@@ -23,7 +23,7 @@ PLAIN: dict[str, str] = {
     "absorber": "damper", "daempfer": "damper", "dämpfer": "damper", "stoßdämpfer": "damper",
     "shockabsorber": "damper", "federbein": "strut", "pherson": "", "mc": "", "feder": "spring", "springs": "spring",
     "coil": "spring", "arb": "bar", "stabilizer": "bar", "stabiliser": "bar", "stabi": "bar", "stabilisator": "bar",
-    "antiroll": "bar", "antirollbar": "bar", "sway": "bar", "swaybar": "bar", "rollbar": "bar",
+    "antiroll": "bar", "antirollbar": "bar", "sway": "bar", "swaybar": "bar", "rollbar": "bar", "auxiliary": "bar",
     "droplink": "droplink", "endlink": "droplink", "pendelstütze": "droplink", "trailingarm": "trailing arm",
     "längslenker": "trailing arm", "lager": "", "punkt": "", "stützlager": "top", "domlager": "top",
     "upright": "knuckle", "radträger": "knuckle", "hub": "knuckle",
@@ -34,6 +34,7 @@ PLAIN: dict[str, str] = {
     "vorn": "front", "vorne": "front", "va": "front axle", "fa": "front axle", "ra": "rear axle",
     "vorderrad": "front wheel", "rearward": "rear", "aft": "rear", "back": "rear", "rr_axle": "rear",
     "hinten": "rear", "ha": "rear axle", "rht": "right", "links": "left", "linke": "left", "rechts": "right",
+    "lh": "left", "rh": "right",
     "rechte": "right", "achse": "axle", "achs": "axle", "suspension": "suspension", "fahrwerk": "suspension",
     "über": "above", "over": "above", "ober": "upper", "unter": "lower", "vorder": "front", "hinter": "rear",
     "inner": "inner", "äußer": "outer",
@@ -43,6 +44,7 @@ PLAIN: dict[str, str] = {
     "steifigkeit": "rate", "federrate": "spring rate", "radbezogen": "wheel", "constant": "rate", "konstante": "rate",
     "dämpfung": "damping", "dämpfungsmaß": "damping ratio", "dämpfungsgrad": "damping ratio", "damp": "damping",
     "ungefedert": "unsprung", "gefedert": "sprung", "aufbau": "body",
+    "bereifung": "tyre", "wankfedersteifigkeit": "roll rate",
     "radstand": "wheelbase", "spurweite": "track", "spur": "track", "tread": "track", "width": "", "cg": "cog",
     "com": "cog", "schwerpunkt": "cog", "höhe": "height", "hoehe": "height", "abstand": "distance",
     "trägheit": "inertia", "massenträgheit": "inertia", "moment": "moment", "moi": "inertia", "last": "load",
@@ -75,7 +77,7 @@ NOISE = frozenset({
     "bushing", "bush", "pivot", "attachment", "attach", "the", "of", "at", "on", "to", "in", "a", "an", "and", "for",
     "from", "with", "per", "value", "its", "sub", "fixed", "about", "axis", "around", "der", "die", "das", "am",
     "im", "des", "je", "pro", "mdl", "model", "ground", "coefficient", "design", "nominal", "static", "zur", "zu",
-    "boden", "straße", "road",
+    "boden", "straße", "road", "din",
 })  # fmt: skip
 """Words without effect on the meaning of a name."""
 

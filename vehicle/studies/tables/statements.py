@@ -137,11 +137,17 @@ class _Reader:
                 text = " ".join(cells)
                 is_remark = bool(length_unit(text) or _ORIGIN.search(text) or stated_axes([text], row.where))
                 has_number = any(map(str.isdigit, " ".join(cells[1:]))) or re.search(r"[:=] *\d", text)
-                if has_number and not is_remark:
+                if (has_number or (len(cells) > 1 and self._names_number(cells[0]))) and not is_remark:
                     self.content.left_out.append((row.where, f"{', '.join(cells)[:60]!r}: not understood"))
                 self._remark(text, title=not is_remark)
         for (_, axle, side), parts in self.coordinates.items():
             self._joined(parts, axle, side)
+
+    def _names_number(self, text: str) -> bool:
+        """Return True for the name of a number, whose row has none: "kerb mass, #REF!, kg"."""
+        words = words_of(text)
+        named = name_words(text, right_letter="") if len({*words} & set(AXLES)) < 2 else None
+        return named is not None and number_of(named) is not None
 
     def _row(self, row: Row) -> bool:
         """Read a row of numbers or a header; False for a text."""
@@ -241,7 +247,7 @@ class _Reader:
                     of_cell = joined[2] if joined and not size else unit or heads.units.get(f"axle{index}", "")
                     name = self._name(row, text, *(("", "") if is_whole else (axle, side)))
                     self._add_number(row, name, cell if size else number, of_cell)
-                elif any(map(str.isdigit, cell)):
+                elif cell.strip("-–"):
                     self.content.left_out.append((row.where, f"{text!r}: {cell!r} is not understood"))
             return True
         after = [(index, value) for index, value in enumerate(values) if value is not None and index not in skipped]
@@ -354,7 +360,8 @@ class _Reader:
         self.curve = []
         terms = words_of(text)
         if _SENTENCE.search(text.strip()) or (len(terms) > LONGEST_TITLE and terms[0] not in _FIRST):
-            pass
+            if "quarter" in terms:
+                self.per_wheel = "per wheel"
         elif title:
             self._title(text)
         elif (match := _AXLE_TITLE.search(text)) and not _ORIGIN.search(text[: match.start()]):

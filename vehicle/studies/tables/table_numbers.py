@@ -23,7 +23,10 @@ ONE_WHEEL, WHOLE_AXLE = 55.0, 75.0
 LIGHT_AXLE, HEAVY_WHEEL = 250.0, 600.0
 """Sprung mass over an axle [kg]: lightest of an axle, and heaviest of a wheel."""
 
-_OF_BOTH_WHEELS = re.compile(r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bpair\b")
+_OF_BOTH_WHEELS = re.compile(
+    r"\b(per|each|pro|je) (axle|achse)\b|\(axle\)|\bboth\b|\bpair\b|\b(two|2|beide\w*) (wheels|räder)\b|"
+    r"\btotal axle\b|\baxle total\b|\bleft ?[+] ?right\b"
+)
 """Words of a rate of both wheels of an axle together."""
 
 _SYSTEM = re.compile(r"(?P<si>\bSI[ -](units?|Einheiten)\b|\bin SI\b)|"
@@ -46,6 +49,13 @@ ONE_AXLE = 120.0
 
 AGREE = 0.01
 """Relative difference of two statements of one number that is round-off."""
+
+
+NO_BAR = {("bar_rate", 0.0), ("bar_wheel_rate", 0.0)}
+_HALF = re.compile(r"\bhalf[ -]*(car|vehicle)|\bhalbfahrzeug", re.IGNORECASE)
+LIGHT_BODY = 750.0
+"""Sprung mass [kg] below which a lumped model may be one of a quarter or a half of a car; assumed: the bodies of
+passenger cars weigh more, half of a body mostly less."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -138,6 +148,7 @@ def read_numbers(content: Statements, result: CarNumbers) -> Values:
     for (key, axle), sides in corners.items():
         values[key, axle] = _both_strokes(sides, result) if set(STROKES) & set(sides) else (
             _both_sides(key, axle, sides, result))  # fmt: skip
+    _require_whole_body(values, content.remarks)
     loaded = {axle for key, axle in values if key == "tyre_radius"}
     for axle in [axle for key, axle in values if key == "rolling_radius"]:
         rolling = values.pop(("rolling_radius", axle))
@@ -147,6 +158,17 @@ def read_numbers(content: Statements, result: CarNumbers) -> Values:
             values["tyre_radius", axle] = rolling
             result.guessed.append((rolling.where, f"{rolling.text}: taken as the loaded radius"))
     return values
+
+
+def _require_whole_body(values: Values, remarks: Sequence[str]) -> None:
+    """Refuse a sprung mass that may be one of a quarter or a half of a car, where the mass of the car is not stated."""
+    body = values.get(("sprung_mass", ""))
+    if body is None or ("kerb_mass", "") in values or body.text.startswith("4 x") or \
+            {"vehicle", "total"} & set(words_of(body.text)):  # fmt: skip
+        return
+    if body.value < LIGHT_BODY or _HALF.search(" ".join(remarks)):
+        raise DataError(f"{body.where}: {body.text} may be of a quarter, a half or the whole of a car; write "
+                        "\"quarter\" or \"vehicle\" in its name, or add the mass of the car")  # fmt: skip
 
 
 def _si(row: Number, key: str, remarks: Sequence[str], result: CarNumbers) -> float:
@@ -225,7 +247,8 @@ def _of_axle(row: Number, key: str, value: Stated, result: CarNumbers, by_the_su
     said, is_rate = f"{row.name.text} {row.note}".lower(), QUANTITIES[key].dimension in (RATE, DAMPING)
     if is_rate and _OF_BOTH_WHEELS.search(said):
         return replace(value, value=0.5 * value.value, text=f"1/2 x {value.text}")
-    if is_rate and row.name.has("heave") and not set(words_of(said)) & set(PER_WHEEL):
+    whole = row.name.has("heave") or "total" in words_of(row.name.text)
+    if is_rate and whole and not set(words_of(said)) & set(PER_WHEEL):
         raise DataError(f"{row.where}: {row.name.text!r} may be of a wheel or of both; write \"per wheel\" or "
                         "\"per axle\" in its name")  # fmt: skip
     if key == "kerb_mass" and "occupied" in words_of(row.name.text):
@@ -288,7 +311,8 @@ def _both_strokes(sides: Mapping[str, Stated], result: CarNumbers) -> Stated:
 
 def _require_size(row: Number, key: str, value: float) -> None:
     low, high = QUANTITIES[key].sizes
-    if not (math.isfinite(value) and low <= value <= high):
+    # An axle may have no bar.
+    if not (math.isfinite(value) and low <= value <= high) and (key, value) not in NO_BAR:
         unit = SI[QUANTITIES[key].dimension]
         raise DataError(f"{row.where}: {_text(row)} is {shown(value, 4)} {unit}, must be {low:g} to {high:g} {unit}; "
                         "check value and unit")  # fmt: skip

@@ -19,7 +19,7 @@ from vehicle.studies.tables.number_names import QUALIFIERS, STROKES, number_of
 from vehicle.studies.tables.unit_factor import unit_factor
 
 TYRE_SIZE = re.compile(r"P?\d{3} */ *\d{2} *Z?R *\d{2}.*", re.IGNORECASE)
-_BOTH = re.compile(r"[(\[ ,]*\b(f|v|va|fr|front|vorn|vorne|r|h|ha|rear|hinten)\b *[/:|&-] *"
+_BOTH = re.compile(r"[(\[ ,]*\b(f|v|va|fr|front|vorn|vorne|r|h|ha|rear|hinten)\b *(?:[/:|&-]|and|und) *"
                    r"\b(f|v|va|front|vorn|vorne|r|rr|h|ha|rear|hinten)\b[)\] ]*", re.IGNORECASE)  # fmt: skip
 """Words of both axles in one name: "Track (F/R)"."""
 _PART = re.compile(r"(?P<value>[+-]?[\d.,]+)\s*(?P<unit>%|[a-zA-Z][^\s/:]*(?:/[a-zA-Z]+)?)?\s*(?P<axle>[a-zA-Z]+)?\.?")
@@ -118,7 +118,8 @@ def _quantities(head: Row, below: Sequence[Row]) -> list[Row]:
     if not below or any(map(_is_number, head.cells)):
         return []
     names = [name_and_unit(cell) for cell in head.cells]
-    plain_names = [name_words(text, right_letter="") for text, _ in names]
+    # "Weight distribution front/rear" and a remark on both axles have two places.
+    plain_names = [name_words(_BOTH.sub(" ", text), right_letter="", where=head.where) for text, _ in names]
     if sum(bool(name.terms) and number_of(name) is not None for name in plain_names) < 2:
         # An axle load has no axle in its name here.
         plain_names = [name_words(f"front {text}", right_letter="") for text, _ in names]
