@@ -25,7 +25,7 @@ EDGES = ("soft", "firm")
 
 
 def laws_by_path(dampers: Sequence[PlacedDamper]) -> dict[str, Damper]:
-    """Return the law of each table of a vehicle file, that of a side if one side has a table of its own.
+    """Return the law of each table of a vehicle file, that of a side if it has a separate table.
 
     Args:
         dampers: dampers of a car; those of a path are right and left.

@@ -29,7 +29,7 @@ BEGIN = 0.1
 five lags of 20 ms; with a longer lag the tests are fitted again without a longer time, see `fitted_beyond_lag`."""
 
 LAGS, LEFT = 5.0, 0.01
-"""Lags that are left out, after which 0.7 % of the earlier state is left, and share that may be left [-]."""
+"""Lags that are left out, after which 0.7 % of the earlier state remains, and share that may remain [-]."""
 
 LONGEST = 0.5
 """Longest part that is left out, over the fitted part of the shortest test."""

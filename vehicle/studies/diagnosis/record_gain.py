@@ -1,8 +1,8 @@
 """Test of the units of a record: the gain that all its accelerations share, estimated from the record itself.
 
 A linear car gives the same record on a road that is g times as high and by sensors of g times the gain. The friction of
-the dampers, the bends of their curves and the noise of the sensors do not grow with the road: they show how rough the
-road truly is. Each simulated drive is multiplied by a random gain, ln g uniform from -ln `LARGEST` to ln `LARGEST`, and
+the dampers, the bends of their curves and the noise of the sensors do not grow with the road: they show the roughness
+of the road. Each simulated drive is multiplied by a random gain, ln g uniform from -ln `LARGEST` to ln `LARGEST`, and
 ln g is learned from the features as every other unknown (`vehicle.studies.diagnosis.learned`). A record in the right
 unit has g = 1. A car without friction shows no gain, and passes: its dampers show in any unit.
 """

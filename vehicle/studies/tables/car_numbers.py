@@ -18,7 +18,7 @@ from vehicle.errors import DataError
 from vehicle.studies.tables.table_numbers import AGREE, AXLES, CarNumbers, Values, key_words
 
 NAMED = {"spring_rate", "ride_frequency", "wheel_hop", "free_radius", "tyre_radius", "bar_rate"}
-"""Numbers whose omission beside others has a sentence of its own."""
+"""Numbers whose omission is explained where they are replaced by others."""
 
 
 @dataclass(slots=True)

@@ -5,7 +5,7 @@
     L_TRACK(2) 1675                -> L_TRACK(2), 1675
     FS_COMP_TABLE ... ENDTABLE     left out
 
-Source: text of parameter files ("parsfiles") of CarSim: keyword, value, unit behind a semicolon, remark behind "!".
+Source: text of parameter files ("parsfiles") of CarSim: keyword, value, unit after a semicolon, remark after "!".
 """
 
 import re

@@ -86,7 +86,7 @@ class TyreFile:
 
     @property
     def stiffness_origin(self) -> str:
-        """Return the names behind the vertical stiffness."""
+        """Return the names from which the vertical stiffness follows."""
         name = "slope of DEFLECTION_LOAD_CURVE at FNOMIN" if self.has_curve else "VERTICAL_STIFFNESS"
         scaled = f" x LCZ {self['LCZ']:g}" if self["LCZ"] != 1.0 else ""
         return name + scaled + (" at INFLPRES" if self["PFZ1"] * self.pressure else "")
