@@ -82,8 +82,8 @@ class DamperFitSettings(Settings):
         metavar="PATTERN",
     )
     vehicle: Path | None = setting(
-        "choose the next test for the velocities of the dampers of this car, on roads of class A, B and C at 80 km/h; "
-        f"{CAR_HELP}; default: 1 mm/s to 1 m/s, each octave alike",
+        f"{CAR_HELP}; default: no car, the next test counts each octave from 1 mm/s to 1 m/s alike. With a car it "
+        "counts the velocities of its dampers on roads of class A, B and C at 80 km/h",
         metavar="FILE.toml",
     )
     destination: Destination = part(Destination)
