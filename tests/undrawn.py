@@ -70,9 +70,9 @@ def leave_out_drawings(present: Callable[[], str]) -> None:
 
 @cache
 def _looks(module: str) -> bool:
-    """Return True for a module of tests that takes sizes or bytes of files, among them of pictures."""
-    path = Path(__file__).parents[1] / module
-    return path.is_file() and any(word in path.read_text(encoding="utf-8") for word in ("st_size", "read_bytes"))
+    """Return True for a module of tests that takes sizes or bytes of files, among them of pictures, or text of SVG."""
+    path, words = Path(__file__).parents[1] / module, ("st_size", "read_bytes", '.svg").read_text')
+    return path.is_file() and any(word in path.read_text(encoding="utf-8") for word in words)
 
 
 def _plotting() -> tuple[str, str]:
