@@ -136,6 +136,7 @@ class Dispatcher:
         """
         waiting = Waiting(in_groups(cases, np.arange(len(cases)) if numbers is None else numbers))
         suspects: deque[Indices] = deque()
+        died = set[int]()
         self._last_worker = clock.monotonic()
         try:
             while waiting or suspects:
@@ -146,7 +147,13 @@ class Dispatcher:
                     if not self._run_waiting(Waiting(task), cases, keep, len(task)):
                         continue
                     if len(task) == 1:
-                        keep(task, self._failed(cases, task, self._death(began)))
+                        reason, number = self._death(began), int(task[0])
+                        # The first loss may be due to another run in the same pool: two deaths of its worker alone.
+                        if reason == DIED and number not in died:
+                            died.add(number)
+                            suspects.append(task)
+                        else:
+                            keep(task, self._failed(cases, task, reason))
                     else:
                         suspects.extend(np.split(task, len(task)))
                 else:
